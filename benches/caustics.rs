@@ -40,8 +40,8 @@ fn main() {
         }
         let scene = scene(ball(&light));
         let plan = plan(&scene).method;
-        let photons = |samples: u32, each: f64| {
-            let photons = (f64::from(samples) * 576.0 * each) as u64;
+        let photons = |samples: u32, per_sample: f64| {
+            let photons = (f64::from(samples) * 576.0 * per_sample) as u64;
             Method {
                 samples,
                 light_pass: Some(LightPass {
@@ -54,10 +54,10 @@ fn main() {
                 ..plan.clone()
             }
         };
-        let way = if plan.light_pass.is_some() { "photons" } else { "chance" };
-        measure(&name, &format!("the plan ({way})"), &scene, &Method { samples: 64, ..plan.clone() });
-        for each in [0.25, 1.0] {
-            measure("", &format!("{each} a sample"), &scene, &photons(64, each));
+        let label = if plan.light_pass.is_some() { "photons" } else { "chance" };
+        measure(&name, &format!("the plan ({label})"), &scene, &Method { samples: 64, ..plan.clone() });
+        for per_sample in [0.25, 1.0] {
+            measure("", &format!("{per_sample} a sample"), &scene, &photons(64, per_sample));
         }
         if !name.contains("point") {
             measure("", "chance", &scene, &Method { samples: 256, light_pass: None, ..plan.clone() });
@@ -80,7 +80,7 @@ fn ball(light: &str) -> String {
     )
 }
 
-fn measure(name: &str, way: &str, scene: &Scene<Curve>, method: &Method) {
+fn measure(name: &str, label: &str, scene: &Scene<Curve>, method: &Method) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     let (mut seconds, mut images) = (0.0, Vec::new());
     for seed in 0..SEEDS {
@@ -90,7 +90,7 @@ fn measure(name: &str, way: &str, scene: &Scene<Curve>, method: &Method) {
         seconds += start.elapsed().as_secs_f64() / SEEDS as f64;
     }
     let (error, mean) = relative_error(&images);
-    println!("{name:12} {way:>22} {seconds:10.3} {error:10.2e} {:12.3} {mean:10.3e}", seconds * error / 1e-3);
+    println!("{name:12} {label:>22} {seconds:10.3} {error:10.2e} {:12.3} {mean:10.3e}", seconds * error / 1e-3);
 }
 
 /// Returns the mean variance over the mean square, and the mean of green.

@@ -20,7 +20,7 @@ use abbe::trace::{Method, prepare, render};
 const SEEDS: u64 = 6;
 const SAMPLES: u32 = 64;
 
-struct Measured {
+struct Measurement {
     seconds: f64,
     image: f64,
     glass: f64,
@@ -52,7 +52,7 @@ fn main() {
             if collapses && light.contains("lines") {
                 continue;
             }
-            let Measured { seconds, image, glass, mean } = measure(&scene, collapses, &mask);
+            let Measurement { seconds, image, glass, mean } = measure(&scene, collapses, &mask);
             let cost = [seconds * image, seconds * glass];
             let [by_image, by_glass] = first.get_or_insert(cost);
             println!(
@@ -73,7 +73,7 @@ fn scene(text: String) -> Scene<Curve> {
 }
 
 /// Renders images of several seeds on one thread.
-fn measure(text: &str, collapses: bool, mask: &[bool]) -> Measured {
+fn measure(text: &str, collapses: bool, mask: &[bool]) -> Measurement {
     let scene = scene(text.to_owned());
     let method = plan(&scene).method;
     let basis = if collapses { comparison::collapsing(scene.film.color_space) } else { method.basis.clone() };
@@ -88,7 +88,7 @@ fn measure(text: &str, collapses: bool, mask: &[bool]) -> Measured {
     times.sort_by(f64::total_cmp);
     let (image, mean) = relative_error(&images, |_| true);
     let (glass, _) = relative_error(&images, |pixel| mask[pixel]);
-    Measured { seconds: times[times.len() / 2], image, glass, mean }
+    Measurement { seconds: times[times.len() / 2], image, glass, mean }
 }
 
 /// Returns the mean variance over the mean square, and the mean color, of the chosen pixels.

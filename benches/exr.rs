@@ -41,9 +41,9 @@ fn main() {
     );
     let film =
         |size: &str, keys: &str| format!("film = {{ {size}, {keys} }}\nrender = {{ samples = 1, model = \"rgb\" }}\n");
-    let twelve = "layers = [\"direct\", \"N\", \"samples\"], precision = \"half\"";
+    let twelve_channels = "layers = [\"direct\", \"N\", \"samples\"], precision = \"half\"";
     for compression in ["zip", "zips", "piz", "rle", "none"] {
-        let keys = format!("{twelve}, compression = \"{compression}\"");
+        let keys = format!("{twelve_channels}, compression = \"{compression}\"");
         compare(&format!("1920 x 1080, 12 channels, half, {compression}"), &film("width = 1920, height = 1080", &keys));
     }
     let large = film("width = 4096, height = 2160", "compression = \"zip\"");
@@ -81,8 +81,8 @@ fn read_back(path: &Path) -> FlatImage {
 }
 
 fn bytes(channel: &exr::prelude::AnyChannel<exr::prelude::FlatSamples>) -> usize {
-    let wide = !matches!(channel.sample_data, exr::prelude::FlatSamples::F16(_));
-    channel.sample_data.len() * if wide { 4 } else { 2 }
+    let is_float = !matches!(channel.sample_data, exr::prelude::FlatSamples::F16(_));
+    channel.sample_data.len() * if is_float { 4 } else { 2 }
 }
 
 fn seconds(work: impl FnOnce()) -> f64 {

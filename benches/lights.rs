@@ -65,9 +65,9 @@ fn rooms() -> Vec<(String, String)> {
             .collect();
         // Seen from below the lamps, because their edges would otherwise cause most of the noise.
         let hall = room([side, 4.0, side], &lamps).replace("look_at = [0, 1.8, 0]", "look_at = [0, 0, -0.5]");
-        let near = hall.find("look_at").expect("a camera");
+        let rest_start = hall.find("look_at").expect("a camera");
         let place = format!("[camera]\nposition = [0, 2.4, {}]\n", 0.4 * side.min(16.0));
-        rooms.push((format!("{count} lamps"), place + &hall[near..]));
+        rooms.push((format!("{count} lamps"), place + &hall[rest_start..]));
     }
     rooms
 }

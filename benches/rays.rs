@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 use std::path::Path;
 use std::time::Instant;
 
-use abbe::math::{DVec3, Frame, Ray, cosine_hemisphere};
+use abbe::math::{DVec3, Frame, Ray, sample_cosine_hemisphere};
 use abbe::shape::{Mesh, Shape, Vertices};
 
 /// Pixels along each side of the image whose rays are traced.
@@ -38,8 +38,8 @@ fn main() {
     let primary = primary_rays();
     let mut random = Random(1);
     let seen: Vec<(Ray, f64)> = primary.iter().filter_map(|ray| seen(&mesh, &ray.0)).collect();
-    let diffuse: Vec<(Ray, f64)> = seen.iter().map(|(leaving, _)| bounce(leaving, &mut random)).collect();
-    let shadow: Vec<(Ray, f64)> = seen.iter().map(|(leaving, _)| toward_lamp(leaving, &mut random)).collect();
+    let diffuse: Vec<(Ray, f64)> = seen.iter().map(|(leaving, _)| bounce_ray(leaving, &mut random)).collect();
+    let shadow: Vec<(Ray, f64)> = seen.iter().map(|(leaving, _)| ray_toward_lamp(leaving, &mut random)).collect();
     println!("{:<8} {:>9} {:>9} {:>14} {:>9}", "rays", "number", "hits", "sum of t", "million/s");
     for (name, rays, any) in [("primary", &primary, false), ("diffuse", &diffuse, false), ("shadow", &shadow, true)] {
         if let Some(folder) = folder {
@@ -173,14 +173,14 @@ fn seen(mesh: &Shape, ray: &Ray) -> Option<(Ray, f64)> {
     Some((Ray { origin: point.position + normal * 1e-4, direction: normal }, intersection.t))
 }
 
-fn bounce(leaving: &Ray, random: &mut Random) -> (Ray, f64) {
-    let local = cosine_hemisphere([random.number(), random.number()]);
+fn bounce_ray(leaving: &Ray, random: &mut Random) -> (Ray, f64) {
+    let local = sample_cosine_hemisphere([random.number(), random.number()]);
     rounded(leaving.origin, Frame::about(leaving.direction).to_world(local), f64::INFINITY)
 }
 
-fn toward_lamp(leaving: &Ray, random: &mut Random) -> (Ray, f64) {
-    let way = DVec3::new(random.number() * 2.0 - 1.0, 5.9, random.number() * 2.0 - 1.0) - leaving.origin;
-    rounded(leaving.origin, way.normalize(), way.length())
+fn ray_toward_lamp(leaving: &Ray, random: &mut Random) -> (Ray, f64) {
+    let to_lamp = DVec3::new(random.number() * 2.0 - 1.0, 5.9, random.number() * 2.0 - 1.0) - leaving.origin;
+    rounded(leaving.origin, to_lamp.normalize(), to_lamp.length())
 }
 
 fn write_mesh(path: &Path, points: &[[f32; 3]], faces: &[[u32; 3]]) {

@@ -19,10 +19,10 @@ fn main() -> abbe::Result<()> {
     };
     let objects = scene["object"].as_array_mut().expect("a list");
     for number in 0..24 {
-        let (turn, away) = (0.7 * f64::from(number), 0.4 + 0.1 * f64::from(number));
+        let (angle, distance) = (0.7 * f64::from(number), 0.4 + 0.1 * f64::from(number));
         let radius = 0.12 + 0.012 * f64::from(number);
         let mut sphere = Table::new();
-        sphere.insert("center".into(), vec![away * turn.cos(), radius, away * turn.sin()].into());
+        sphere.insert("center".into(), vec![distance * angle.cos(), radius, distance * angle.sin()].into());
         sphere.insert("radius".into(), radius.into());
         objects.push(toml! { material = "glass" }.into());
         let ball = objects.last_mut().and_then(|ball| ball.as_table_mut()).expect("a table");

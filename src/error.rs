@@ -10,7 +10,7 @@ use std::sync::Arc;
 #[derive(thiserror::Error)]
 pub enum Error {
     /// The scene cannot be rendered as written. Lists its mistakes in the order of the file.
-    #[error("{}", told(.0))]
+    #[error("{}", join_mistakes(.0))]
     Scene(Vec<Diagnostic>),
     /// Something impossible was requested, for example on the command line.
     #[error("{message}")]
@@ -110,8 +110,8 @@ impl Diagnostic {
         Lines::default().place_of(self)
     }
 
-    fn told_by(&self, lines: &mut Lines) -> String {
-        let what = match &self.key {
+    fn describe(&self, lines: &mut Lines) -> String {
+        let summary = match &self.key {
             Some(key) if key.is_empty() => self.message.clone(),
             Some(key) => format!("{key}: {}", self.message),
             None => {
@@ -119,20 +119,20 @@ impl Diagnostic {
                 format!("{}:{line}:{column}: {}", self.file.display(), self.message)
             }
         };
-        self.help.iter().fold(what, |what, help| format!("{what} ({help})"))
+        self.help.iter().fold(summary, |summary, help| format!("{summary} ({help})"))
     }
 }
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.write_str(&self.told_by(&mut Lines::default()))
+        formatter.write_str(&self.describe(&mut Lines::default()))
     }
 }
 
 /// Joins all mistakes, one per line.
-fn told(mistakes: &[Diagnostic]) -> String {
+fn join_mistakes(mistakes: &[Diagnostic]) -> String {
     let mut lines = Lines::default();
-    mistakes.iter().map(|mistake| mistake.told_by(&mut lines)).collect::<Vec<_>>().join("\n")
+    mistakes.iter().map(|mistake| mistake.describe(&mut lines)).collect::<Vec<_>>().join("\n")
 }
 
 /// Finds the line and column of one mistake after another. If they come in text order, the text is scanned only once.
@@ -176,24 +176,25 @@ impl Lines {
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
     let length = lower.chars().count();
-    let farness = |candidate: &str| {
+    let distance = |candidate: &str| {
         let candidate = candidate.to_lowercase();
-        let whole = length > 1 && candidate.split('-').skip(1).any(|part| part == lower);
+        let has_word = length > 1 && candidate.split('-').skip(1).any(|part| part == lower);
         let other = candidate.chars().count();
-        let most = (other / 3).max(usize::from(length.min(other) >= 2 && length.max(other) >= 3));
+        let max_changes = (other / 3).max(usize::from(length.min(other) >= 2 && length.max(other) >= 3));
         // The edit distance is at least the difference in length.
-        if !whole && length.abs_diff(other) > most {
+        if !has_word && length.abs_diff(other) > max_changes {
             return None;
         }
         let changes = strsim::osa_distance(&lower, &candidate);
-        (whole || changes <= most).then(|| (changes > 0, !whole, changes, foreign_letters(&lower, &candidate)))
+        (has_word || changes <= max_changes)
+            .then(|| (changes > 0, !has_word, changes, unshared_letters(&lower, &candidate)))
     };
-    let near = candidates.into_iter().filter_map(|candidate| Some((farness(candidate)?, candidate)));
-    near.min_by_key(|(farness, _)| *farness).map(|(_, candidate)| candidate)
+    let near = candidates.into_iter().filter_map(|candidate| Some((distance(candidate)?, candidate)));
+    near.min_by_key(|(distance, _)| *distance).map(|(_, candidate)| candidate)
 }
 
 /// Returns whether the file name has one of the given extensions.
-pub(crate) fn ends_in(path: &Path, endings: &[&str]) -> bool {
+pub(crate) fn has_extension(path: &Path, endings: &[&str]) -> bool {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     endings.iter().any(|known| known.eq_ignore_ascii_case(ending))
 }
@@ -202,9 +203,9 @@ pub(crate) fn ends_in(path: &Path, endings: &[&str]) -> bool {
 /// among all files if no extensions are given.
 pub(crate) fn nearest_file(missing: &Path, endings: &[&str]) -> Option<PathBuf> {
     let folder = missing.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let ends = |path: &Path| endings.is_empty() || ends_in(path, endings);
+    let has_ending = |path: &Path| endings.is_empty() || has_extension(path, endings);
     let paths = fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path()));
-    let files = paths.filter(|path| ends(path) && path.is_file());
+    let files = paths.filter(|path| has_ending(path) && path.is_file());
     let mut names: Vec<String> = files.filter_map(|path| path.file_name()?.to_str().map(str::to_owned)).collect();
     names.sort();
     // An extension that both share must not make a short name look closer to another.
@@ -212,12 +213,12 @@ pub(crate) fn nearest_file(missing: &Path, endings: &[&str]) -> Option<PathBuf> 
     let missing_name = missing.file_name()?.to_str()?;
     let stems: Vec<String> = names.iter().map(|name| stem(name)).collect();
     let near = nearest(&stem(missing_name), stems.iter().map(String::as_str))?;
-    let of_stem = || names.iter().zip(&stems).filter(|(_, stem)| *stem == near).map(|(name, _)| name.as_str());
-    Some(missing.with_file_name(nearest(missing_name, of_stem()).or_else(|| of_stem().next())?))
+    let same_stem = || names.iter().zip(&stems).filter(|(_, stem)| *stem == near).map(|(name, _)| name.as_str());
+    Some(missing.with_file_name(nearest(missing_name, same_stem()).or_else(|| same_stem().next())?))
 }
 
 /// Counts the letters that only one of two words has.
-fn foreign_letters(a: &str, b: &str) -> usize {
+fn unshared_letters(a: &str, b: &str) -> usize {
     let mut rest: Vec<char> = b.chars().collect();
     let missing = a.chars().filter(|letter| {
         let at = rest.iter().position(|other| other == letter);

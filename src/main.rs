@@ -14,29 +14,29 @@ use abbe::{Error, Image, Rendering, Result, Scene, write_plan};
 
 use command::cli::{self, Job, Jobs, Output, Request};
 use command::events::{Event, write_account};
-use command::keep::Keep;
-use command::outputs::{Folders, check_outputs, check_standard, check_words, is_standard, spare};
+use command::keep::Saver;
+use command::outputs::{Folders, check_not_input, check_outputs, check_stdout, check_text_file, is_stdio};
 use command::{catalog, diff, info, merge, messages, progress, signals, view};
 
 fn main() -> ExitCode {
-    signals::report_large_files();
-    let answered = cli::parse().and_then(|request| match request {
+    signals::ignore_file_size_signal();
+    let outcome = cli::parse().and_then(|request| match request {
         Request::Render(jobs) => run(&jobs),
         Request::Answer(text) => messages::answer(&text).map(|()| ExitCode::SUCCESS),
-        Request::Catalog(query) => listed(catalog::lines(&query, std::io::stdout().is_terminal())),
-        Request::Info(query) => listed(info::lines(&query)),
+        Request::Catalog(query) => print_lines(catalog::lines(&query, std::io::stdout().is_terminal())),
+        Request::Info(query) => print_lines(info::lines(&query)),
         Request::View(query) => view::run(&query).map(|()| ExitCode::SUCCESS),
         Request::Merge(query) => merge::run(&query).map(|()| ExitCode::SUCCESS),
         Request::Diff(query) => Ok(diff::run(&query)),
     });
-    let code = answered.unwrap_or_else(|error| {
+    let code = outcome.unwrap_or_else(|error| {
         messages::print_error(&error);
         ExitCode::from(error.exit_code())
     });
     if messages::has_lost_lines() && code == ExitCode::SUCCESS { ExitCode::FAILURE } else { code }
 }
 
-fn listed(lines: Result<Vec<String>>) -> Result<ExitCode> {
+fn print_lines(lines: Result<Vec<String>>) -> Result<ExitCode> {
     messages::answer_lines(&lines?).map(|()| ExitCode::SUCCESS)
 }
 
@@ -56,16 +56,16 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
         let job = job?;
         let source = match &mut read {
             Some(source) => source,
-            none if is_standard(&job.scene) => none.insert(Source::standard_input()?),
+            none if is_stdio(&job.scene) => none.insert(Source::standard_input()?),
             none => none.insert(Source::read(&job.scene)?),
         };
         if let Some(frame) = job.frame.filter(|_| count > 1) {
             messages::say_frame(frame, number, count);
         }
         if number == 1 {
-            check_ends(jobs, &job, source)?;
+            check_end_frames(jobs, &job, source)?;
         }
-        let code = do_one(&job, source, &mut warned)?;
+        let code = run_job(&job, source, &mut warned)?;
         if code != ExitCode::SUCCESS {
             return Ok(code);
         }
@@ -75,15 +75,15 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
 
 /// Refuses to render any of several frames if the one with the lowest or the highest number has a mistake. As the
 /// values that are allowed mostly form a range, this finds most mistakes before any frame is rendered.
-fn check_ends(jobs: &Jobs, first: &Job, source: &Source) -> Result<()> {
+fn check_end_frames(jobs: &Jobs, first: &Job, source: &Source) -> Result<()> {
     if !matches!(first.output, Output::Image { .. }) {
         return Ok(());
     }
     for job in jobs.ends() {
         let job = job?;
-        if let (Some(frame), Err(error)) = (job.frame.filter(|_| job.frame != first.frame), checked(&job, source)) {
+        if let (Some(frame), Err(error)) = (job.frame.filter(|_| job.frame != first.frame), check_job(&job, source)) {
             // A mistake that all frames share is reported for the first frame.
-            checked(first, source)?;
+            check_job(first, source)?;
             messages::say(&format!("frame {frame} has a mistake, so no frame is rendered"));
             return Err(error);
         }
@@ -91,12 +91,12 @@ fn check_ends(jobs: &Jobs, first: &Job, source: &Source) -> Result<()> {
     Ok(())
 }
 
-fn checked(job: &Job, source: &Source) -> Result<()> {
+fn check_job(job: &Job, source: &Source) -> Result<()> {
     job.options.apply(&mut source.compile_with(&job.set)?)
 }
 
 /// Checks, plans or renders one frame. Prints each warning only once for all frames.
-fn do_one(job: &Job, source: &Source, warned: &mut HashSet<String>) -> Result<ExitCode> {
+fn run_job(job: &Job, source: &Source, warned: &mut HashSet<String>) -> Result<ExitCode> {
     let began = Instant::now();
     let mut scene = progress::during("reading the scene", || source.compile_with(&job.set))?;
     // Spectra are only written beside an EXR. A plan that is followed covers them as well, so they stay.
@@ -104,8 +104,8 @@ fn do_one(job: &Job, source: &Source, warned: &mut HashSet<String>) -> Result<Ex
         scene.format.spectral = None;
     }
     job.options.apply(&mut scene)?;
-    let news = scene.warnings.iter().filter(|warning| warned.insert((*warning).clone()));
-    news.for_each(|warning| messages::warn(warning));
+    let new_warnings = scene.warnings.iter().filter(|warning| warned.insert((*warning).clone()));
+    new_warnings.for_each(|warning| messages::warn(warning));
     match &job.output {
         Output::Check => {
             messages::print_checked(&source.path, scene.objects.len())?;
@@ -120,7 +120,7 @@ fn do_one(job: &Job, source: &Source, warned: &mut HashSet<String>) -> Result<Ex
 fn answer_plan(scene: &Scene, file: Option<&Path>) -> Result<ExitCode> {
     let files = Vec::from_iter(file);
     check_outputs(scene, &files)?;
-    check_words("--plan-file", "frame.plan", file)?;
+    check_text_file("--plan-file", "frame.plan", file)?;
     let _folders = Folders::of_files(&files)?;
     let plan = progress::during("planning", || plan(scene));
     messages::answer_plan(&plan)?;
@@ -133,11 +133,11 @@ fn answer_plan(scene: &Scene, file: Option<&Path>) -> Result<ExitCode> {
 
 /// Writes the image to its file, or to standard output. Returns the number of values that were too bright for it.
 fn write(image: &Image, exr: &Path) -> Result<u64> {
-    if !is_standard(exr) {
+    if !is_stdio(exr) {
         return image.write_exr(exr);
     }
     let (bytes, clamped) = image.exr_bytes()?;
-    messages::send(&bytes)?;
+    messages::send_image(&bytes)?;
     Ok(clamped)
 }
 
@@ -150,12 +150,12 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     let all: Vec<&Path> = images.iter().copied().chain(checkpoint.as_deref()).chain(outputs.report).collect();
     check_outputs(scene, &all)?;
     if let Some(plan) = &job.options.plan {
-        all.iter().try_for_each(|output| spare(plan, "plan that is followed", output))?;
+        all.iter().try_for_each(|output| check_not_input(plan, "plan that is followed", output))?;
     }
-    check_words("--report", "frame.json", outputs.report)?;
+    check_text_file("--report", "frame.json", outputs.report)?;
     let _folders = Folders::of_files(&all)?;
-    let way = format!("exposure {:?}, stamp {}", job.exposure, job.options.stamp);
-    let mut keep = Keep::new(&job.keep, main, checkpoint, way)?;
+    let settings = format!("exposure {:?}, stamp {}", job.exposure, job.options.stamp);
+    let mut keep = Saver::new(&job.keep, main, checkpoint, settings)?;
     if keep.has_finished(scene, &job.options, &files) {
         return Ok(ExitCode::SUCCESS);
     }
@@ -174,7 +174,7 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     let took = progress.finish(rendering.expected());
     let written = outputs.write(&rendering, job.exposure, took);
     keep.finish(&rendering, &written.files);
-    written.end()
+    written.finish()
 }
 
 /// The outputs of a render.
@@ -191,9 +191,9 @@ struct Outputs<'j> {
 impl<'j> Outputs<'j> {
     fn new(job: &'j Job, scene: &Scene, [exr, png]: [Option<&'j Path>; 2]) -> Result<Self> {
         let has_spectra = scene.format.spectral.is_some();
-        if exr.is_some_and(is_standard) {
-            check_standard(has_spectra)?;
-            job.keep.check_standard()?;
+        if exr.is_some_and(is_stdio) {
+            check_stdout(has_spectra)?;
+            job.keep.check_stdout()?;
         }
         let part = exr.and_then(|exr| job.keep.part(exr));
         let exr = exr.filter(|_| part.is_none());
@@ -202,7 +202,7 @@ impl<'j> Outputs<'j> {
     }
 
     fn exr_file(&self) -> Option<&Path> {
-        self.exr.filter(|exr| !is_standard(exr))
+        self.exr.filter(|exr| !is_stdio(exr))
     }
 
     /// Returns the files of the image, the main one first.
@@ -246,27 +246,27 @@ impl<'j> Outputs<'j> {
 #[derive(Default)]
 struct Written<'f> {
     files: Vec<&'f Path>,
-    failed: Vec<Error>,
+    errors: Vec<Error>,
 }
 
 impl<'f> Written<'f> {
     fn file(&mut self, file: Option<&'f Path>, write: impl FnOnce(&Path) -> Result<()>) {
         let Some(file) = file else { return };
         match write(file) {
-            Ok(()) if is_standard(file) => {}
+            Ok(()) if is_stdio(file) => {}
             Ok(()) => {
                 signals::note_written();
                 self.files.push(file);
             }
-            Err(error) => self.failed.push(error),
+            Err(error) => self.errors.push(error),
         }
     }
 
     /// Prints the names of the written files, and all errors but the last one, which it returns.
-    fn end(mut self) -> Result<ExitCode> {
+    fn finish(mut self) -> Result<ExitCode> {
         self.files.into_iter().for_each(messages::print_written);
-        let last = self.failed.pop();
-        self.failed.iter().for_each(messages::print_error);
+        let last = self.errors.pop();
+        self.errors.iter().for_each(messages::print_error);
         last.map_or(Ok(ExitCode::SUCCESS), Err)
     }
 }

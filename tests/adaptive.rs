@@ -10,11 +10,11 @@ use abbe::plan::{Plan, plan};
 use abbe::trace::{LightPass, Method, SampleDensity, Smoothness, Stop, World, adaptive, prepare, render};
 
 use crate::support::scenes::{
-    GROUND, SPLITTING, body, film_of, films_of, method, moments, scene, standard_errors, view,
+    GROUND, SPLITTING, body, film_of, films_of, mean_and_variance, method, scene, sigma_limit, view,
 };
 
 /// Returns a scene of a floor below a point light, without noise, and a ball in front of a lamp, which is noisy.
-fn lit(size: [u32; 2], samples: u32, render: &str) -> String {
+fn partly_noisy(size: [u32; 2], samples: u32, render: &str) -> String {
     large_view(size)
         + &format!("[render]\nmodel = \"rgb\"\nsamples = {samples}\ndiffuse_bounces = 0\n{render}\n")
         + &body("floor", "diffuse = { reflectance = 0.6 }", &[GROUND])
@@ -41,18 +41,18 @@ fn is_adaptive(text: &str) -> (bool, Plan) {
 #[test]
 fn the_plan_asks_for_more_samples_where_the_noise_is() {
     let large = [256, 256];
-    let (adaptive, decided) = is_adaptive(&lit(large, 64, ""));
+    let (adaptive, decided) = is_adaptive(&partly_noisy(large, 64, ""));
     assert!(adaptive, "{:?}", decided.because);
     assert!(decided.because.iter().any(|line| line.starts_with("adaptive sampling")), "{:?}", decided.because);
-    assert!(!is_adaptive(&lit(large, 64, "adaptive = \"off\"")).0, "off");
-    assert!(!is_adaptive(&lit([64, 64], 64, "")).0, "too small");
+    assert!(!is_adaptive(&partly_noisy(large, 64, "adaptive = \"off\"")).0, "off");
+    assert!(!is_adaptive(&partly_noisy([64, 64], 64, "")).0, "too small");
     let furnace = large_view(large)
         + "[render]\nsamples = 64\n[[light]]\nenvironment = { radiance = 1 }\n"
         + &body("floor", "diffuse = { reflectance = 1 }", &[GROUND]);
     assert!(!is_adaptive(&furnace).0, "a furnace");
     // The number of samples of an image does not change how they are distributed.
-    let of = |samples| plan(&scene(&lit(large, samples, ""))).method.density;
-    assert_eq!(of(64), of(256));
+    let measure = |samples| plan(&scene(&partly_noisy(large, samples, ""))).method.density;
+    assert_eq!(measure(64), measure(256));
 }
 
 /// A lamp's light on a shadow catcher is noisy but not seen. Only bodies that block some of it make visible noise.
@@ -108,8 +108,8 @@ fn density() -> SampleDensity {
 
 fn films(text: &str, density: Option<&SampleDensity>, change: impl Fn(Method) -> Method, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
-    let asked = change(Method { density: density.cloned(), ..method(&scene, SPLITTING) });
-    films_of(&scene, &asked, 0..seeds)
+    let setup = change(Method { density: density.cloned(), ..method(&scene, SPLITTING) });
+    films_of(&scene, &setup, 0..seeds)
 }
 
 /// Every pixel takes the number of samples of its cell, also if they are divided among replicates.
@@ -118,9 +118,9 @@ fn every_pixel_takes_the_samples_of_its_cell() {
     let density = density();
     let stop = |method| Method { stop: Some(Stop { noise: None, time: None, least: 64, most: 64 }), ..method };
     for (name, film, each) in [
-        ("one render", films(&lit([12, 12], 20, ""), Some(&density), |method| method, 1).remove(0), [20, 1]),
-        ("replicates", films(&lit([12, 12], 20, ""), Some(&density), stop, 1).remove(0), [8, 8]),
-        ("one sample", films(&lit([12, 12], 1, ""), Some(&density), |method| method, 1).remove(0), [1, 1]),
+        ("one render", films(&partly_noisy([12, 12], 20, ""), Some(&density), |method| method, 1).remove(0), [20, 1]),
+        ("replicates", films(&partly_noisy([12, 12], 20, ""), Some(&density), stop, 1).remove(0), [8, 8]),
+        ("one sample", films(&partly_noisy([12, 12], 1, ""), Some(&density), |method| method, 1).remove(0), [1, 1]),
     ] {
         for (i, pixel) in (0..).zip(&film.pixels) {
             let [x, y] = [i % 12, i / 12];
@@ -150,20 +150,20 @@ fn the_density_of_samples_changes_no_mean() {
         }),
         ..method
     };
-    let sharp = lit([12, 12], 24, "").replace("height = 12", "height = 12\nfilter = \"mitchell\"");
-    let lit_around = lit([12, 12], 24, "").replace("diffuse_bounces = 0", "diffuse_bounces = 2")
+    let sharp = partly_noisy([12, 12], 24, "").replace("height = 12", "height = 12\nfilter = \"mitchell\"");
+    let lit_around = partly_noisy([12, 12], 24, "").replace("diffuse_bounces = 0", "diffuse_bounces = 2")
         + &body(
             "wall",
             "diffuse = { reflectance = 0.8 }",
             &["quad = { center = [0, 2, -2], u = [4, 0, 0], v = [0, 2, 0] }"],
         );
-    let over_glass = lit([12, 12], 24, "")
+    let over_glass = partly_noisy([12, 12], 24, "")
         + &body("glass", "dielectric = { index = 1.5 }", &["sphere = { center = [0.9, 1.2, 0.8], radius = 0.4 }"]);
     let cases: [(&str, String, Change); 5] = [
-        ("one render", lit([12, 12], 24, ""), plain),
+        ("one render", partly_noisy([12, 12], 24, ""), plain),
         ("light vertices", lit_around, vertices),
         ("photons", over_glass, photons),
-        ("replicates", lit([12, 12], 24, ""), stop),
+        ("replicates", partly_noisy([12, 12], 24, ""), stop),
         ("a filter", sharp, plain),
     ];
     for (name, text, change) in &cases {
@@ -172,18 +172,18 @@ fn the_density_of_samples_changes_no_mean() {
             assert!(even[0] != films(text, None, plain, 1)[0], "{name}: it is another image");
         }
         for (quarter, band) in (0..4).flat_map(|quarter| (0..3).map(move |band| (quarter, band))) {
-            let of = |films: &[Film]| {
+            let measure = |films: &[Film]| {
                 let mean = |film: &Film| {
                     let inside = |i: &usize| (i % 12) / 6 + 2 * (i / 72) == quarter;
                     (0..144).filter(inside).map(|i| f64::from(film.pixels[i].rgb[band])).sum::<f64>() / 36.0
                 };
-                let (mean, variance) = moments(films.iter().map(mean));
+                let (mean, variance) = mean_and_variance(films.iter().map(mean));
                 (mean, variance / SEEDS as f64)
             };
-            let [(a, of_a), (b, of_b)] = [of(&even), of(&uneven)];
-            let off = (a - b).abs() / (of_a + of_b).sqrt();
+            let [(a, variance_a), (b, variance_b)] = [measure(&even), measure(&uneven)];
+            let off = (a - b).abs() / (variance_a + variance_b).sqrt();
             // Means of 24 films have the heavier tails of Student's t distribution.
-            let bound = 1.2 * standard_errors(12 * cases.len());
+            let bound = 1.2 * sigma_limit(12 * cases.len());
             assert!(off < bound, "{name}: quarter {quarter}, band {band}: {b} for {a}, off by {off:.1} sigma");
         }
     }
@@ -193,13 +193,13 @@ fn the_density_of_samples_changes_no_mean() {
 /// its edge.
 #[test]
 fn parts_of_an_image_take_the_samples_of_the_whole() {
-    let (text, density) = (lit([12, 12], 6, ""), density());
+    let (text, density) = (partly_noisy([12, 12], 6, ""), density());
     let whole = films(&text, Some(&density), |method| method, 1).remove(0);
     for (crop, overscan) in [(Some(Window { left: 5, top: 4, width: 3, height: 2 }), 0), (None, 3)] {
         let mut part = scene(&text);
         (part.film.crop, part.film.overscan) = (crop, abbe::film::Overscan::even(overscan));
-        let asked = Method { density: Some(density.clone()), ..method(&part, SPLITTING) };
-        let part = film_of(&part, asked);
+        let setup = Method { density: Some(density.clone()), ..method(&part, SPLITTING) };
+        let part = film_of(&part, setup);
         for (i, pixel) in (0_i32..).zip(&part.pixels) {
             let [x, y] = [part.corner[0] + i % part.width as i32, part.corner[1] + i / part.width as i32];
             let inside = (0..12).contains(&x) && (0..12).contains(&y);
@@ -213,13 +213,13 @@ fn parts_of_an_image_take_the_samples_of_the_whole() {
 /// The plan saves as many rays as it says, judged by variances over images of many seeds. It may save more: evenly
 /// spread samples gain more from their number than the plan assumes.
 #[test]
-fn what_the_plan_says_of_the_gain_is_so() {
+fn the_plan_predicts_the_gain() {
     const SEEDS: u64 = 12;
-    let text = lit([192, 144], 160, "");
+    let text = partly_noisy([192, 144], 160, "");
     let (adaptive, Plan { method: decided, because, .. }) = is_adaptive(&text);
     assert!(adaptive, "{because:?}");
     let line = because.iter().find(|line| line.starts_with("adaptive")).expect("it is told");
-    let told: f64 =
+    let predicted: f64 =
         line.split("about ").nth(1).and_then(|end| end.split(' ').next()).and_then(|x| x.parse().ok()).expect("a gain");
     let scene = scene(&text);
     let [even, uneven] = [None, decided.density.clone()].map(|density| {
@@ -231,11 +231,11 @@ fn what_the_plan_says_of_the_gain_is_so() {
         let rays = images.iter().map(|(_, report)| report.rays as f64).sum::<f64>();
         let scale = images[0].0.pixels.iter().map(|pixel| f64::from(pixel.rgb[1]).powi(2)).sum::<f64>() / 27_648.0;
         let error = |i: usize| {
-            let (mean, variance) = moments(images.iter().map(|(film, _)| f64::from(film.pixels[i].rgb[1])));
+            let (mean, variance) = mean_and_variance(images.iter().map(|(film, _)| f64::from(film.pixels[i].rgb[1])));
             variance / (mean * mean + 0.1 * scale)
         };
         rays * (0..27_648).map(error).sum::<f64>()
     });
-    println!("the plan says {told} times as long, it is {:.2} times", even / uneven);
-    assert!((0.75..2.0).contains(&(even / uneven / told)), "{} for {told}", even / uneven);
+    println!("the plan says {predicted} times as long, it is {:.2} times", even / uneven);
+    assert!((0.75..2.0).contains(&(even / uneven / predicted)), "{} for {predicted}", even / uneven);
 }

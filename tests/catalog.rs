@@ -7,19 +7,19 @@ use crate::support::run::{Answer, Folder, render};
 fn catalog(arguments: &[&str]) -> Answer {
     let folder = Folder::with("unused.toml", "");
     let answer = render(&folder, &[&["catalog"], arguments].concat());
-    assert_eq!(folder.listing(), ["unused.toml"]);
+    assert_eq!(folder.file_names(), ["unused.toml"]);
     answer
 }
 
 /// Returns the lines found and asserts that stderr is empty.
-fn found(arguments: &[&str]) -> Vec<String> {
+fn found_lines(arguments: &[&str]) -> Vec<String> {
     let answer = catalog(arguments);
     assert_eq!((answer.code, &*answer.stderr), (Some(0), ""), "{arguments:?}");
     answer.stdout.lines().map(str::to_owned).collect()
 }
 
 fn names(arguments: &[&str]) -> Vec<String> {
-    found(arguments).iter().map(|line| line.split("  ").next().unwrap_or_default().to_owned()).collect()
+    found_lines(arguments).iter().map(|line| line.split("  ").next().unwrap_or_default().to_owned()).collect()
 }
 
 #[test]
@@ -30,20 +30,27 @@ fn a_glass_is_a_line_of_aligned_columns() {
         format!("schott/N-BK7HT   1.51680   64.17  300-2500 nm  absorption  {source}"),
         format!("schott/N-BK7HTi  1.51680   64.17  300-2500 nm  absorption  {source}"),
     ];
-    assert_eq!(found(&["glass", "n-bk7"])[..3], expected);
+    assert_eq!(found_lines(&["glass", "n-bk7"])[..3], expected);
     let diamond = "gem/diamond  2.41749   55.30  226-760 nm  -  Peter, Zeitschrift für Physik 15, 358 (1923)";
-    assert_eq!(found(&["glass", "diamond"]), [diamond]);
+    assert_eq!(found_lines(&["glass", "diamond"]), [diamond]);
 }
 
 #[test]
 fn everything_is_listed() {
-    assert!(found(&["glass"]).len() > 1700);
-    assert!(found(&["metal"]).len() > 40);
-    assert_eq!((found(&["illuminant"]).len(), found(&["reflectance"]).len()), (49, 24));
-    assert_eq!((found(&["lights"]), found(&["colors"])), (found(&["illuminant"]), found(&["reflectance"])));
-    assert_eq!((found(&["glasses", "sf11"]), found(&["metals"])), (found(&["glass", "sf11"]), found(&["metal"])));
-    let all: usize = ["glass", "metal", "illuminant", "reflectance"].iter().map(|kind| found(&[kind]).len()).sum();
-    assert_eq!(found(&[]).len(), all);
+    assert!(found_lines(&["glass"]).len() > 1700);
+    assert!(found_lines(&["metal"]).len() > 40);
+    assert_eq!((found_lines(&["illuminant"]).len(), found_lines(&["reflectance"]).len()), (49, 24));
+    assert_eq!(
+        (found_lines(&["lights"]), found_lines(&["colors"])),
+        (found_lines(&["illuminant"]), found_lines(&["reflectance"]))
+    );
+    assert_eq!(
+        (found_lines(&["glasses", "sf11"]), found_lines(&["metals"])),
+        (found_lines(&["glass", "sf11"]), found_lines(&["metal"]))
+    );
+    let all: usize =
+        ["glass", "metal", "illuminant", "reflectance"].iter().map(|kind| found_lines(&[kind]).len()).sum();
+    assert_eq!(found_lines(&[]).len(), all);
 }
 
 #[test]
@@ -53,13 +60,13 @@ fn all_words_are_found_in_names_other_names_makers_and_families() {
     assert_eq!(names(&["glass", "flint", "schott/f"])[..2], ["schott/F2", "schott/F2G12"]);
     assert_eq!(names(&["glass", "crown", "schott/n-bk7ht"]), ["schott/N-BK7HT", "schott/N-BK7HTi"]);
     assert!(names(&["glass", "flint"]).len() + names(&["glass", "crown"]).len() < names(&["glass"]).len());
-    assert_eq!(found(&["metal", "gold"])[0].split_whitespace().next(), Some("Au"));
+    assert_eq!(found_lines(&["metal", "gold"])[0].split_whitespace().next(), Some("Au"));
     assert_eq!(names(&["d65"]), ["hoya/TAFD65", "D65"]);
     assert_eq!(names(&["reflectance", "dark"]), ["colorchecker/dark skin"]);
 }
 
 #[test]
-fn what_is_not_found_is_told_with_the_nearest_names() {
+fn a_failed_search_suggests_the_nearest_names() {
     let answer = catalog(&["metal", "golt"]);
     let expected = "error: the catalog has no metal that matches \"golt\"\nhelp: the nearest name is gold\n";
     assert_eq!((answer.code, &*answer.stdout, &*answer.stderr), (Some(2), "", expected));
@@ -81,7 +88,7 @@ fn help_has_an_example() {
 }
 
 #[test]
-fn a_reader_that_stops_listening_ends_it_without_a_word() {
+fn a_reader_that_stops_reading_ends_it_silently() {
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_render"));
     command.args(["catalog", "glass"]).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("the command can be started");

@@ -111,7 +111,7 @@ pub type Kind = (&'static str, String, Options, fn(&Method) -> bool);
 
 /// Returns scenes for all ways to find light.
 fn kinds() -> Vec<Kind> {
-    let shows = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_none());
+    let splats = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_none());
     let gathers = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
     let all = || Options { layers: Some(Layer::all()), spectral: true, ..Options::default() };
     let cut = Options {
@@ -133,15 +133,15 @@ fn kinds() -> Vec<Kind> {
     let part = Options { crop, ..Options::default() };
     let noisy = GLASS.replace("width = 37, height = 21", "width = 740, height = 420");
     let noisy = noisy.replace("seed = 3", "seed = 3, caustics = \"off\"");
-    let of_the_ball = Options { crop: Some(Window { left: 320, top: 180, width: 37, height: 21 }), ..all() };
+    let ball_options = Options { crop: Some(Window { left: 320, top: 180, width: 37, height: 21 }), ..all() };
     vec![
-        ("photons that are shown", CAUSTIC.into(), Options::default(), shows),
+        ("photons that are shown", CAUSTIC.into(), Options::default(), splats),
         ("photons that are gathered, all layers", GLASS.into(), all(), gathers),
         ("a filter with negative lobes, a crop in the overscan", mitchell, cut, gathers),
         ("Stokes vectors, of photons that are gathered", GLASS.into(), stokes(), gathers),
         ("Stokes vectors, of a filter with negative lobes", sharp, stokes(), gathers),
         ("light vertices", large, part, |method| method.light_vertices),
-        ("adaptive sampling", noisy, of_the_ball, |method| method.density.is_some()),
+        ("adaptive sampling", noisy, ball_options, |method| method.density.is_some()),
         ("wavelengths that are drawn", split, all(), |method| method.basis.draws_wavelengths()),
         ("one sample per pixel", still.replace("samples = 20", "samples = 1"), all(), |method| method.samples == 1),
     ]
@@ -340,7 +340,7 @@ fn a_part_of_an_image_is_expected_to_take_a_part_of_the_time() {
 }
 
 /// Renders to the end with some samples and resumes with a different number.
-fn raised(text: &str, options: &Options, samples: [u32; 2]) -> Result<(Image, Image, Resumed), Error> {
+fn resume_with_samples(text: &str, options: &Options, samples: [u32; 2]) -> Result<(Image, Image, Resumed), Error> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("image.checkpoint");
     let scene = scene(text);
@@ -358,7 +358,8 @@ fn more_samples_are_added_to_those_that_were_taken() {
         Options { layers: Some(vec![Layer::Variance, Layer::Lights, Layer::CryptoObject]), ..Options::default() };
     // More samples splat different photons.
     for (text, samples) in [(CAUSTIC, [16, 64]), (CAUSTIC, [32, 50]), (ROOM, [32, 100])] {
-        let (image, whole, resumed) = raised(text, &layers, samples).expect("there is a pass that ends there");
+        let (image, whole, resumed) =
+            resume_with_samples(text, &layers, samples).expect("there is a pass that ends there");
         assert!(is_same(&image, &whole) && resumed == Resumed::Continues, "{samples:?}");
     }
 }
@@ -373,13 +374,13 @@ fn samples_that_cannot_become_those_that_are_asked_for_are_refused() {
         // The radius of the photon map shrinks with more samples.
         (GLASS, Options::default(), [16, 32], "another plan"),
     ] {
-        let refused = raised(text, &options, samples).map(|_| ()).expect_err("it is refused");
+        let refused = resume_with_samples(text, &options, samples).map(|_| ()).expect_err("it is refused");
         let Error::Arguments { message, help: Some(help) } = refused else { panic!("{refused}") };
         assert!(message.contains(why), "{samples:?}: {message}");
         // The render resumes with the number of samples that the message names.
         let named = format!("ask for {} samples per pixel, or delete it to start over", samples[0]);
         assert!(help == named || why == "another plan", "{samples:?}: {help}");
-        assert_eq!(raised(text, &options, [samples[0]; 2]).expect("it goes on").2, Resumed::Finished);
+        assert_eq!(resume_with_samples(text, &options, [samples[0]; 2]).expect("it goes on").2, Resumed::Finished);
     }
 }
 

@@ -179,8 +179,10 @@ fn the_printed_chromaticity_of_6504_kelvin_is_that_of_coarse_steps() {
 /// 1 nm.
 #[test]
 fn the_equal_energy_spectrum_is_pink_in_rec709_however_it_is_written() {
-    let expected =
-        apply(&ColorSpace::Rec709.of_xyz(), visible::xyz(&[1.0; visible::COUNT]).map(|x| x / visible::luminous()));
+    let expected = apply(
+        &ColorSpace::Rec709.matrix_from_xyz(),
+        visible::xyz(&[1.0; visible::COUNT]).map(|x| x / visible::y_integral()),
+    );
     assert_near(expected, [1.2048, 0.9483, 0.9089], 4e-4, "equal energy");
     for light in ["{ illuminant = \"E\" }", "{ samples = [[360, 1], [830, 1]] }", "{ samples = [[300, 1], [900, 1]] }"]
     {
@@ -195,22 +197,22 @@ fn the_equal_energy_spectrum_is_pink_in_rec709_however_it_is_written() {
 }
 
 /// Returns the color of a surface under a light, from one sample that carries all fixed lanes.
-fn seen(basis: &Basis, surface: &Curve, light: &Curve) -> [f64; 3] {
+fn lit_color(basis: &Basis, surface: &Curve, light: &Curve) -> [f64; 3] {
     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
     let reflectance = draw.read(&basis.tabulate(Quantity::Reflectance, surface));
     let emission = draw.read(&basis.tabulate(Quantity::Emission, light));
-    basis.response(light).sensor(&draw, reflectance * emission, false)
+    basis.response(light).film_rgb(&draw, reflectance * emission, false)
 }
 
 /// Returns the color of a spectrum under the film's white, integrated in steps of 1 nm.
-fn integrated(space: ColorSpace, reflectance: impl Fn(f64) -> f64) -> [f64; 3] {
+fn integrated_color(space: ColorSpace, reflectance: impl Fn(f64) -> f64) -> [f64; 3] {
     let white = Emission::new(&1.0.into(), space);
     visible::wavelengths()
         .zip(white.columns())
         .fold([0.0; 3], |sum, (nm, color)| std::array::from_fn(|c| sum[c] + reflectance(nm) * color[c]))
 }
 
-fn largest(found: [f64; 3], expected: [f64; 3]) -> f64 {
+fn largest_difference(found: [f64; 3], expected: [f64; 3]) -> f64 {
     (0..3).fold(0.0, |most: f64, c| larger(most, (found[c] - expected[c]).abs()))
 }
 
@@ -229,13 +231,13 @@ fn rgb_reflectances_come_back_as_themselves_under_the_films_white() {
             let sigmoid = basis.upsampler().fit(rgb);
             assert_eq!(sigmoid.saturation, 1.0, "{space:?}: {rgb:?}");
             assert!(visible::wavelengths().all(|nm| (0.0..=1.0).contains(&sigmoid.at(nm))), "{rgb:?}");
-            let smooth = apply(&space.to_rec709(), integrated(space, |nm| sigmoid.at(nm)));
-            assert!(largest(smooth, rgb) < 1e-4, "{space:?}: {smooth:?} for {rgb:?}");
+            let smooth = apply(&space.to_rec709(), integrated_color(space, |nm| sigmoid.at(nm)));
+            assert!(largest_difference(smooth, rgb) < 1e-4, "{space:?}: {smooth:?} for {rgb:?}");
 
             let table = basis.tabulate(Quantity::Reflectance, &surface);
             assert!(table.bins().iter().all(|x| (0.0..=1.0).contains(x)), "{rgb:?}: {:?}", table.bins());
-            let found = apply(&space.to_rec709(), seen(&basis, &surface, &1.0.into()));
-            let off = largest(found, rgb);
+            let found = apply(&space.to_rec709(), lit_color(&basis, &surface, &1.0.into()));
+            let off = largest_difference(found, rgb);
             worst = larger(worst, off);
             missed += usize::from(off > 1e-4);
         }

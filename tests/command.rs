@@ -49,37 +49,37 @@ fn folder() -> Folder {
 fn assert_refuses(arguments: &[&str], code: i32, stderr: &str) {
     let folder = folder();
     render(&folder, arguments).assert_refused(code, stderr);
-    assert_eq!(folder.listing(), ["ball.toml"]);
+    assert_eq!(folder.file_names(), ["ball.toml"]);
 }
 
 /// Asserts that the command succeeds with nothing on stdout and leaves exactly these files.
-fn assert_leaves(arguments: &[&str], files: &[&str]) {
+fn assert_leaves_files(arguments: &[&str], files: &[&str]) {
     let folder = folder();
     let answer = render(&folder, arguments);
     assert_eq!((answer.code, &*answer.stdout), (Some(0), ""), "{}", answer.stderr);
-    assert_eq!(folder.listing(), files, "{}", answer.stderr);
+    assert_eq!(folder.file_names(), files, "{}", answer.stderr);
 }
 
 #[test]
 fn the_image_is_named_after_its_scene_and_stands_in_the_current_folder() {
     let made = ["ball.exr", "ball.toml"];
-    assert_leaves(&["--exr", "ball.toml"], &made);
-    assert_leaves(&["ball.toml", "--exr"], &made);
-    assert_leaves(&["ball.toml"], &made);
+    assert_leaves_files(&["--exr", "ball.toml"], &made);
+    assert_leaves_files(&["ball.toml", "--exr"], &made);
+    assert_leaves_files(&["ball.toml"], &made);
     let folder = Folder::new();
     fs::create_dir(folder.path_of("scenes")).expect("folders can be made");
     folder.write("scenes/ball.v2.toml", SCENE);
     assert_eq!(render(&folder, &["--exr", "scenes/ball.v2.toml"]).code, Some(0));
-    assert_eq!(folder.listing(), ["ball.v2.exr", "scenes"]);
+    assert_eq!(folder.file_names(), ["ball.v2.exr", "scenes"]);
 }
 
 #[test]
 fn the_image_may_be_named_before_or_after_the_scene() {
     let made = ["ball.toml", "frame.exr"];
-    assert_leaves(&["ball.toml", "--exr", "frame.exr"], &made);
-    assert_leaves(&["--exr", "frame.exr", "ball.toml"], &made);
-    assert_leaves(&["--exr=frame.exr", "ball.toml"], &made);
-    assert_leaves(&["ball.toml", "--exr", "FRAME.EXR"], &["FRAME.EXR", "ball.toml"]);
+    assert_leaves_files(&["ball.toml", "--exr", "frame.exr"], &made);
+    assert_leaves_files(&["--exr", "frame.exr", "ball.toml"], &made);
+    assert_leaves_files(&["--exr=frame.exr", "ball.toml"], &made);
+    assert_leaves_files(&["ball.toml", "--exr", "FRAME.EXR"], &["FRAME.EXR", "ball.toml"]);
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn a_picture_that_is_no_png_is_refused() {
 }
 
 #[test]
-fn one_scene_is_asked_for() {
+fn exactly_one_scene_is_required() {
     let refusal = "error: no scene is given\nhelp: name a scene, a TOML file: render --exr scene.toml\n";
     assert_refuses(&[], 2, refusal);
     assert_refuses(&["--exr"], 2, refusal);
@@ -122,7 +122,7 @@ fn one_scene_is_asked_for() {
 }
 
 #[test]
-fn words_that_stand_apart_and_belong_together_are_told() {
+fn arguments_that_belong_together_but_are_separate_are_reported() {
     let setting = "error: a setting is one word: a key, `=` and a value\nhelp: for instance: --set film.width=320\n";
     assert_refuses(&["--set", "film.width", "64", "ball.toml"], 2, setting);
     assert_refuses(&["ball.toml", "--set", "film.width", "=", "64"], 2, setting);
@@ -136,7 +136,7 @@ fn words_that_stand_apart_and_belong_together_are_told() {
 }
 
 #[test]
-fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here() {
+fn arguments_of_other_renderers_are_refused_with_their_names_here() {
     let refusal = |said: &str, help: &str| format!("error: there is no {said}\nhelp: {help}\n");
     let flag = |flag: &str, help: &str| {
         assert_refuses(&["ball.toml", flag, "3"], 2, &refusal(&format!("argument {flag}"), help))
@@ -164,9 +164,10 @@ fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here(
     command("plan", "did you mean render --plan?");
     command("frames", "did you mean render --frame 1-24?");
     command("sequence", "did you mean render --frame 1-24?");
-    let alone = |word: &str, help: &str| assert_refuses(&[word], 2, &refusal(&format!("command `{word}`"), help));
-    alone("help", "did you mean render --help?");
-    alone("catalogue", "did you mean render catalog?");
+    let assert_unknown_command =
+        |word: &str, help: &str| assert_refuses(&[word], 2, &refusal(&format!("command `{word}`"), help));
+    assert_unknown_command("help", "did you mean render --help?");
+    assert_unknown_command("catalogue", "did you mean render catalog?");
     let before = "error: the command info comes before all other arguments\n\
                   help: write render info, and its arguments after that; render info --help lists them\n";
     assert_refuses(&["--threads", "1", "info", "a.exr"], 2, before);
@@ -212,13 +213,13 @@ fn an_image_that_cannot_be_written_is_refused_before_anything_is_rendered() {
     let folder = folder();
     fs::create_dir(folder.path_of("a.exr")).expect("folders can be made");
     render(&folder, &["ball.toml", "--exr", "a.exr"]).assert_refused(1, &cannot("a.exr", "it is a folder"));
-    assert_eq!(folder.listing(), ["a.exr", "ball.toml"]);
+    assert_eq!(folder.file_names(), ["a.exr", "ball.toml"]);
 }
 
 /// Nobody can create a folder there.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_folder_that_cannot_be_made_is_told() {
+fn a_folder_that_cannot_be_created_is_reported() {
     let reason = "its folder does not exist and cannot be made";
     let refusal = format!("error: cannot write /proc/nothing/a.exr: {reason}\n");
     assert_refuses(&["ball.toml", "--exr", "/proc/nothing/a.exr"], 1, &refusal);
@@ -236,8 +237,8 @@ fn numbers_on_the_command_line_are_checked() {
     is_refused("--layers", "N,albdo", "there is no layer `albdo`: did you mean albedo?");
     is_refused("--layers", "depth", "there is no layer `depth` (leave it out: Z is in every file)");
     is_refused("--layers", "N,normals", "there is no layer `normals` (normals are in N)");
-    let of_a_light = "there is no layer `light_key` (ask for lights: it writes one such layer for each light)";
-    is_refused("--layers", "light_key", of_a_light);
+    let light_hint = "there is no layer `light_key` (ask for lights: it writes one such layer for each light)";
+    is_refused("--layers", "light_key", light_hint);
     let both = "there are no layers `albdo` (did you mean albedo?), `varianc` (did you mean variance?)";
     is_refused("--layers", "albdo,N,varianc", both);
     let both = "there are no layers `normal` (normals are in N), `depth` (leave it out: Z is in every file)";
@@ -281,7 +282,7 @@ fn the_help_lists_all_commands() {
 }
 
 #[test]
-fn a_misspelt_flag_is_told_with_the_nearest_right_one() {
+fn a_misspelled_flag_is_reported_with_the_nearest_correct_one() {
     let answer = render(&folder(), &["ball.toml", "--sampels", "3"]);
     assert_eq!(answer.code, Some(2));
     assert!(answer.stderr.contains("tip: a similar argument exists: '--samples'"), "{}", answer.stderr);
@@ -298,7 +299,7 @@ fn a_plan_goes_to_stdout_and_writes_nothing() {
             "{}",
             answer.stdout
         );
-        assert_eq!(folder.listing(), ["ball.toml"]);
+        assert_eq!(folder.file_names(), ["ball.toml"]);
     }
 }
 
@@ -307,7 +308,7 @@ fn a_check_says_that_the_scene_is_valid_and_writes_nothing() {
     let folder = folder();
     let answer = render(&folder, &["--check", "ball.toml"]);
     answer.assert_refused(0, "ball.toml is a valid scene: 2 objects\n");
-    assert_eq!(folder.listing(), ["ball.toml"]);
+    assert_eq!(folder.file_names(), ["ball.toml"]);
 }
 
 #[test]
@@ -326,7 +327,7 @@ fn a_plan_or_a_check_together_with_an_image_is_refused() {
 fn a_picture_is_8_bit_rgb_of_the_film_s_size() {
     let folder = folder();
     assert_eq!(render(&folder, &["ball.toml", "--png", "look.png"]).code, Some(0));
-    assert_eq!(folder.listing(), ["ball.toml", "look.png"]);
+    assert_eq!(folder.file_names(), ["ball.toml", "look.png"]);
     let picture = read_png(&folder.path_of("look.png"));
     assert_eq!((picture.width, picture.pixels.len()), (6, 6 * 4));
     // The sky in the corner has radiance 1 and is full white.
@@ -349,9 +350,9 @@ fn an_exposure_of_minus_one_halves_the_light_of_the_picture_alone() {
 
 #[test]
 fn a_picture_alone_leaves_an_image_of_the_same_scene_as_it_is() {
-    assert_leaves(&["ball.toml", "--png", "look.png"], &["ball.toml", "look.png"]);
-    assert_leaves(&["--exr", "ball.toml", "--png", "look.png"], &["ball.exr", "ball.toml", "look.png"]);
-    assert_leaves(&["ball.toml", "--exr", "a.exr", "--png", "look.png"], &["a.exr", "ball.toml", "look.png"]);
+    assert_leaves_files(&["ball.toml", "--png", "look.png"], &["ball.toml", "look.png"]);
+    assert_leaves_files(&["--exr", "ball.toml", "--png", "look.png"], &["ball.exr", "ball.toml", "look.png"]);
+    assert_leaves_files(&["ball.toml", "--exr", "a.exr", "--png", "look.png"], &["a.exr", "ball.toml", "look.png"]);
     let folder = folder();
     folder.write("ball.exr", "an older image");
     assert_eq!(render(&folder, &["ball.toml", "--png", "look.png"]).code, Some(0));
@@ -382,7 +383,7 @@ fn an_existing_image_survives_a_failing_run_and_is_replaced_by_a_good_one() {
     assert_eq!(render(&folder, &["ball.toml"]).code, Some(0));
     let image = folder.read("ball.exr");
     assert_eq!(image[..4], [0x76, 0x2f, 0x31, 0x01], "the magic number of OpenEXR");
-    assert_eq!(folder.listing(), ["bad.toml", "ball.exr", "ball.toml"]);
+    assert_eq!(folder.file_names(), ["bad.toml", "ball.exr", "ball.toml"]);
 }
 
 #[test]

@@ -45,7 +45,7 @@ environment.radiance = 0.2
 "#;
 
 /// Renders a scene with the command and returns the bytes of the EXR and the PNG.
-fn rendered(folder: &Folder, scene: &str, flags: &[&str]) -> (Vec<u8>, Vec<u8>) {
+fn render_files(folder: &Folder, scene: &str, flags: &[&str]) -> (Vec<u8>, Vec<u8>) {
     folder.write("scene.toml", scene);
     let answer = render(folder, &[&["scene.toml", "--exr", "image.exr", "--png", "image.png"], flags].concat());
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
@@ -60,9 +60,9 @@ fn any_number_of_threads_and_any_run_write_the_same_bytes() {
         .replace("[material]", "[material]\nplain.diffuse.reflectance = 0")
         .replace("material = \"floor\"", "material = \"silver\"");
     for scene in [RANDOM, deterministic.as_str()] {
-        let first = rendered(&folder, scene, &["--layers", "all", "--threads", "1"]);
+        let first = render_files(&folder, scene, &["--layers", "all", "--threads", "1"]);
         for threads in ["1", "2", "3", "7"] {
-            let again = rendered(&folder, scene, &["--layers", "all", "--threads", threads]);
+            let again = render_files(&folder, scene, &["--layers", "all", "--threads", threads]);
             assert!(again == first, "{threads} threads write other bytes");
         }
     }
@@ -72,7 +72,7 @@ fn any_number_of_threads_and_any_run_write_the_same_bytes() {
 fn another_seed_gives_another_image_of_the_same_scene() {
     let folder = Folder::new();
     let red = |flags: &[&str]| {
-        rendered(&folder, RANDOM, flags);
+        render_files(&folder, RANDOM, flags);
         let image = read_first_flat_layer_from_file(folder.path_of("image.exr")).expect("an EXR");
         let channels = image.layer_data.channel_data.list;
         let red = channels.iter().find(|channel| channel.name.eq("R")).expect("a red channel");
@@ -90,7 +90,7 @@ fn another_seed_gives_another_image_of_the_same_scene() {
 fn only_a_stamp_says_when_and_how_an_image_was_made() {
     let folder = Folder::new();
     let header = |flags: &[&str]| {
-        rendered(&folder, RANDOM, flags);
+        render_files(&folder, RANDOM, flags);
         let image = read_first_flat_layer_from_file(folder.path_of("image.exr")).expect("an EXR");
         image.layer_data.attributes
     };

@@ -15,7 +15,7 @@ use abbe::plan::plan;
 use abbe::{Image, Options, Scene};
 
 use crate::support::larger::larger;
-use crate::support::scenes::{films_of, moments, rendered_with};
+use crate::support::scenes::{films_of, mean_and_variance, render_text_with};
 
 /// Dispersive glass, a mirror, a pane, rough metal and a coated ball on a floor, lit by a lamp, a sky and a spot.
 /// Photons are splatted and gathered, and lanes part.
@@ -63,21 +63,24 @@ spot = { position = [3, 3, -2], look_at = [0.2, 0.8, 0.6], cone_angle = 30, inte
 
 /// Two renders with two samples differ even in pixels where both samples of each render agree.
 #[test]
-fn too_few_samples_tell_no_variance_and_that_is_said() {
-    let told = |layers: &[Layer], samples: u32| {
+fn too_few_samples_give_no_variance_and_a_warning() {
+    let reported = |layers: &[Layer], samples: u32| {
         let options = Options { layers: Some(layers.to_vec()), samples: Some(samples), ..Options::default() };
-        rendered_with(ROOM, &options).warnings()
+        render_text_with(ROOM, &options).warnings()
     };
     assert_eq!(
-        told(&[Layer::Variance, Layer::HalfA, Layer::Normal], 3),
+        reported(&[Layer::Variance, Layer::HalfA, Layer::Normal], 3),
         ["variance, half_a show the noise only with 4 or more samples per pixel, not with 3"]
     );
-    assert_eq!(told(&[Layer::HalfB], 1), ["half_b shows the noise only with 4 or more samples per pixel, not with 1"]);
-    assert!(told(&[Layer::Variance, Layer::HalfB], 4).is_empty() && told(&[Layer::Samples], 1).is_empty());
+    assert_eq!(
+        reported(&[Layer::HalfB], 1),
+        ["half_b shows the noise only with 4 or more samples per pixel, not with 1"]
+    );
+    assert!(reported(&[Layer::Variance, Layer::HalfB], 4).is_empty() && reported(&[Layer::Samples], 1).is_empty());
 }
 
-fn rendered(text: &str, layers: &[Layer]) -> Image {
-    rendered_with(text, &Options { layers: Some(layers.to_vec()), threads: Some(1), ..Options::default() })
+fn render_text(text: &str, layers: &[Layer]) -> Image {
+    render_text_with(text, &Options { layers: Some(layers.to_vec()), threads: Some(1), ..Options::default() })
 }
 
 /// Returns the RGB channels of a layer of light, pixel by pixel.
@@ -114,7 +117,7 @@ fn a_camera_within_a_hidden_body_sees_as_if_that_were_not_there() {
         shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }\n[[light]]\nenvironment = { radiance = 1 }\n";
     let body = "[material.body]\ndielectric = { index = 1, absorption = 3 }\n[[object]]\nmaterial = \"body\"\n\
         shape.sphere = { center = [0, 9, 0], radius = 0.5 }\nvisible_to_camera = false\n";
-    let colors = beauty(&rendered(&(floor.to_owned() + body), &[]));
+    let colors = beauty(&render_text(&(floor.to_owned() + body), &[]));
     let shown = colors.iter().map(|color| color[1]).sum::<f64>() / colors.len() as f64;
     // The body blocks at most this fraction of the light that reaches the floor. Random paths may hit it a few times
     // more often.
@@ -124,7 +127,7 @@ fn a_camera_within_a_hidden_body_sees_as_if_that_were_not_there() {
 
 #[test]
 fn layers_of_light_add_up_to_the_image() {
-    let image = rendered(ROOM, &Layer::all());
+    let image = render_text(ROOM, &Layer::all());
     assert_sum(&image, &["emission", "background", "direct", "indirect"], 1.0);
     let lobes = ["diffuse", "glossy", "specular", "transmission"];
     let split = lobes.map(|lobe| [format!("{lobe}_direct"), format!("{lobe}_indirect")]);
@@ -145,7 +148,7 @@ fn layers_of_light_add_up_to_the_image() {
 
 #[test]
 fn layers_change_no_bit_of_the_image() {
-    let (plain, layered) = (rendered(ROOM, &[]), rendered(ROOM, &Layer::all()));
+    let (plain, layered) = (render_text(ROOM, &[]), render_text(ROOM, &Layer::all()));
     for channel in ["R", "G", "B", "A", "Z"] {
         assert!(plain.layer(channel) == layered.layer(channel), "{channel}");
     }
@@ -166,9 +169,9 @@ fn a_light_of_its_own_layer_is_the_image_that_it_makes_alone() {
         "[[light]]\npoint = { position = [0, 2, 0], intensity = 3 }\n",
         "[[light]]\nname = \"late light\"\npoint = { position = [1, 1, 1], intensity = 2 }\n",
     );
-    let both = rendered(&room(&format!("{point}{late}")), &[Layer::Lights]);
+    let both = render_text(&room(&format!("{point}{late}")), &[Layer::Lights]);
     for (layer, light) in [("light_point", point), ("light_late_light", late)] {
-        let alone = rendered(&room(light), &[]);
+        let alone = render_text(&room(light), &[]);
         let pairs = rgb(&both, layer).into_iter().zip(beauty(&alone));
         for (pixel, (part, whole)) in pairs.enumerate() {
             let near = (0..3).all(|i| (part[i] - whole[i]).abs() <= 1e-6 + 1e-5 * whole[i]);
@@ -180,7 +183,7 @@ fn a_light_of_its_own_layer_is_the_image_that_it_makes_alone() {
 /// A coat reflects the same whatever lies below it. A base scatters the same in every pixel as it does alone.
 #[test]
 fn lobes_of_one_surface_are_told_apart_to_the_last_digits() {
-    let lit = |materials: &str, layer: Layer| {
+    let lit_layer = |materials: &str, layer: Layer| {
         let text = BALL
             .replace(
                 "material.clay.diffuse.reflectance = { rgb = [0.2, 0.5, 0.8] }",
@@ -188,7 +191,7 @@ fn lobes_of_one_surface_are_told_apart_to_the_last_digits() {
             )
             .replace("environment.radiance = 1", "point = { position = [3, 2, 4], intensity = 30 }")
             .replace("render =", "render.model = \"rgb\"\nrender.seed = 1\n#");
-        let image = rendered(&text, &[layer]);
+        let image = render_text(&text, &[layer]);
         rgb(&image, layer.name())
     };
     let same = |[a, b]: [Vec<[f64; 3]>; 2], what: &str| {
@@ -199,20 +202,20 @@ fn lobes_of_one_surface_are_told_apart_to_the_last_digits() {
     };
     let coated = "clay.plastic = { reflectance = { rgb = [0.2, 0.5, 0.8] }, roughness = 0.3 }";
     let coat = "clay.plastic = { reflectance = 0, roughness = 0.3 }";
-    same([lit(coated, Layer::GlossyDirect), lit(coat, Layer::Direct)], "the coat");
+    same([lit_layer(coated, Layer::GlossyDirect), lit_layer(coat, Layer::Direct)], "the coat");
     let mixed = "clay.mix = { materials = [\"chalk\", \"gold\"], amount = 0.25 }\nchalk.diffuse.reflectance = 0.8\n\
                  gold.conductor = { metal = \"Au\", roughness = 0.3 }";
     let chalk = "clay.diffuse.reflectance = 0.6";
     let gold = "clay.mix = { materials = [\"gold\", \"soot\"], amount = 0.75 }\nsoot.diffuse.reflectance = 0\n\
                 gold.conductor = { metal = \"Au\", roughness = 0.3 }";
-    same([lit(mixed, Layer::DiffuseDirect), lit(chalk, Layer::Direct)], "the chalk");
-    same([lit(mixed, Layer::GlossyDirect), lit(gold, Layer::Direct)], "the gold");
+    same([lit_layer(mixed, Layer::DiffuseDirect), lit_layer(chalk, Layer::Direct)], "the chalk");
+    same([lit_layer(mixed, Layer::GlossyDirect), lit_layer(gold, Layer::Direct)], "the gold");
 }
 
 #[test]
 fn lights_of_one_group_share_a_layer() {
     let text = ROOM.replace("name = \"key lamp\"", "group = \"warm\"").replace("name = \"rim\"", "group = \"warm\"");
-    let image = rendered(&text, &[Layer::Lights]);
+    let image = render_text(&text, &[Layer::Lights]);
     let names: Vec<_> = image.film().layers.iter().map(|layer| layer.name.as_str()).collect();
     assert_eq!(names, ["light_warm", "light_environment"]);
     assert_sum(&image, &names, 1.0);
@@ -232,14 +235,14 @@ fn layers_that_would_fill_all_memory_are_refused() {
 
 #[test]
 fn names_of_lights_that_no_file_can_tell_apart_are_refused() {
-    for (from, to, told) in [
+    for (from, to, reported) in [
         ("\"key lamp\"", "\"a lamp with quite a long name\"", "is too long for some programs"),
         ("\"rim\"", "\"key-lamp\"", "the lights key lamp and key-lamp would share the layer light_key_lamp"),
     ] {
         let scene = Scene::parse(&ROOM.replace(from, to), "").expect("the scene is valid");
         let options = Options { layers: Some(vec![Layer::Lights]), ..Options::default() };
         let error = abbe::render(&scene, &options).expect_err("the names are refused");
-        assert!(error.to_string().contains(told), "{error}");
+        assert!(error.to_string().contains(reported), "{error}");
         assert!(abbe::render(&scene, &Options { samples: Some(1), ..Options::default() }).is_ok());
     }
 }
@@ -259,12 +262,12 @@ environment.radiance = 1
 
 #[test]
 fn surfaces_are_those_that_the_camera_meets() {
-    let image = rendered(BALL, &[Layer::Position, Layer::Normal, Layer::GeometricNormal, Layer::Albedo, Layer::Uv]);
+    let image = render_text(BALL, &[Layer::Position, Layer::Normal, Layer::GeometricNormal, Layer::Albedo, Layer::Uv]);
     let layer = |name: &str| image.layer(name).unwrap_or_else(|| panic!("there is no {name}"));
     let [position, normal, flat] =
         ["P", "N", "Nd"].map(|name| ["X", "Y", "Z"].map(|axis| layer(&format!("{name}.{axis}"))));
     let (alpha, depth) = (layer("A"), layer("Z"));
-    let mut met = 0;
+    let mut hits = 0;
     for pixel in 0..33 * 33 {
         let at = |of: &[Vec<f32>; 3]| [0, 1, 2].map(|axis| f64::from(of[axis][pixel]));
         let (p, n) = (at(&position), at(&normal));
@@ -272,7 +275,7 @@ fn surfaces_are_those_that_the_camera_meets() {
             assert_eq!((p, n), ([0.0; 3], [0.0; 3]), "pixel {pixel} is empty");
             continue;
         }
-        met += 1;
+        hits += 1;
         // A point on the unit ball about the origin equals its own normal.
         assert!((0..3).all(|i| (p[i] - n[i]).abs() < 1e-6), "pixel {pixel}: {p:?} and {n:?}");
         assert_eq!(n, at(&flat));
@@ -283,7 +286,7 @@ fn surfaces_are_those_that_the_camera_meets() {
         let uv = ["UV.U", "UV.V"].map(|name| layer(name)[pixel]);
         assert!(uv.iter().all(|x| (0.0..=1.0).contains(x)), "{uv:?}");
     }
-    assert!(met > 300);
+    assert!(hits > 300);
 }
 
 #[test]
@@ -291,7 +294,7 @@ fn albedo_of_metal_and_glass_is_what_they_send_back() {
     let of = |material: &str| {
         let text =
             BALL.replace("diffuse.reflectance = { rgb = [0.2, 0.5, 0.8] }", material).replace("= 4 }\n", "= 256 }\n");
-        let image = rendered(&text, &[Layer::Albedo]);
+        let image = render_text(&text, &[Layer::Albedo]);
         rgb(&image, "albedo")[16 * 33 + 16]
     };
     // Glass reflects or transmits all light that hits it. A mirror reflects its reflectance.
@@ -334,7 +337,7 @@ fn what_is_seen_in_a_mirror_is_the_first_surface_if_asked_for() {
 #[test]
 fn a_hidden_sky_lights_the_scene_and_is_not_in_the_image() {
     let hidden = BALL.replace("[[light]]", "[[light]]\nvisible_to_camera = false");
-    let (seen, hidden) = (rendered(BALL, &[]), rendered(&hidden, &[]));
+    let (seen, hidden) = (render_text(BALL, &[]), render_text(&hidden, &[]));
     let alpha = seen.layer("A").expect("every image has it");
     assert_eq!(hidden.layer("A").as_ref(), Some(&alpha));
     for (pixel, ((alpha, seen), hidden)) in alpha.iter().zip(seen.rgb()).zip(hidden.rgb()).enumerate() {
@@ -347,7 +350,7 @@ fn a_hidden_object_is_not_in_the_image_but_in_its_light() {
     // A screen between the camera and the ball, which blocks some of the environment's light.
     let screen = "\n[[object]]\nvisible_to_camera = false\n\
                   shape.quad = { center = [0, 0, 2], u = [0.4, 0, 0], v = [0, 0.4, 0] }\nmaterial = \"clay\"\n";
-    let (without, with) = (rendered(BALL, &[]), rendered(&format!("{BALL}{screen}"), &[]));
+    let (without, with) = (render_text(BALL, &[]), render_text(&format!("{BALL}{screen}"), &[]));
     for channel in ["A", "Z"] {
         assert_eq!(without.layer(channel), with.layer(channel), "{channel}");
     }
@@ -358,9 +361,9 @@ fn a_hidden_object_is_not_in_the_image_but_in_its_light() {
 #[test]
 fn a_holdout_cuts_a_hole_and_leaves_the_rest_alone() {
     let other = "\n[[object]]\nshape.sphere = { center = [0.5, 0, 1.2], radius = 0.3 }\nmaterial = \"clay\"\n";
-    let plain = rendered(&format!("{BALL}{other}"), &[]);
-    let cut = rendered(&format!("{BALL}{}", other.replace("shape.", "holdout = true\nshape.")), &[]);
-    let behind = rendered(BALL, &[]);
+    let plain = render_text(&format!("{BALL}{other}"), &[]);
+    let cut = render_text(&format!("{BALL}{}", other.replace("shape.", "holdout = true\nshape.")), &[]);
+    let behind = render_text(BALL, &[]);
     let (mut holes, mut same) = (0, 0);
     for pixel in 0..33 * 33 {
         let of = |image: &Image, channel: &str| image.layer(channel).expect("every image has it")[pixel];
@@ -392,7 +395,7 @@ fn ball_on_ground(ball: bool, ground: &str, sky: &str, lamp: &str) -> Image {
          [[object]]\n{lamp}shape.sphere = {{ center = [2, 4, 1], radius = 0.5 }}\nmaterial = \"lamp\"\n\
          [[light]]\n{sky}environment.radiance = 0.5\n"
     );
-    rendered(&text, &[Layer::Shadow])
+    render_text(&text, &[Layer::Shadow])
 }
 
 #[test]
@@ -405,19 +408,19 @@ fn an_image_with_shadow_catcher_over_its_plate_is_the_whole_picture() {
     // Blocks of 4 x 4 pixels have a fourth of a pixel's noise.
     for block in 0..8 * 6 {
         let pixels = (0..16).map(|i| (block / 8 * 4 + i / 4) * 32 + block % 8 * 4 + i % 4);
-        let (mut laid, mut expected) = ([0.0; 3], [0.0; 3]);
+        let (mut composited, mut expected) = ([0.0; 3], [0.0; 3]);
         for pixel in pixels {
             let clear = 1.0 - f64::from(alpha[pixel]);
             let is_catcher = over.rgb()[pixel] == [0.0; 3];
             shaded += usize::from(is_catcher && alpha[pixel] > 0.3);
             for channel in 0..3 {
-                laid[channel] += beauty(&over)[pixel][channel] + clear * beauty(&plate)[pixel][channel];
+                composited[channel] += beauty(&over)[pixel][channel] + clear * beauty(&plate)[pixel][channel];
                 expected[channel] += beauty(&whole)[pixel][channel];
             }
             assert!(!is_catcher || (0..3).all(|i| shadow[pixel][i] <= 1.0));
         }
         for channel in 0..3 {
-            worst = larger(worst, (laid[channel] / expected[channel] - 1.0).abs());
+            worst = larger(worst, (composited[channel] / expected[channel] - 1.0).abs());
         }
     }
     assert!(shaded > 8, "{shaded} pixels lie in the shadow");
@@ -442,7 +445,7 @@ fn mattes_cover_what_the_image_covers() {
          instances = [[{ translate = [-1.6, 0.2, 1.8] }], [{ translate = [-1.6, 0.2, 2.2] }]]\n\n[[light]]\nenvironment",
     );
     let mattes = [Layer::CryptoObject, Layer::CryptoMaterial, Layer::CryptoAsset];
-    let image = rendered(&text, &mattes);
+    let image = render_text(&text, &mattes);
     let alpha = image.layer("A").expect("every image has it");
     let bits = |name: &str| id(name);
     let coverage = |matte: &str, id: u32, pixel: usize| -> f32 {
@@ -475,21 +478,22 @@ fn variance_is_no_less_than_images_of_other_seeds_show() {
     scene.format.layers = vec![Layer::Variance, Layer::HalfA, Layer::HalfB];
     let method = plan(&scene).method;
     let films = films_of(&scene, &method, 0..24);
-    let (mut told, mut seen, mut halves) = (0.0, 0.0, 0.0);
+    let (mut reported, mut seen, mut halves) = (0.0, 0.0, 0.0);
     for pixel in 0..40 * 28 {
         for channel in 0..3 {
-            let (mean, variance) = moments(films.iter().map(|film| f64::from(film.pixels[pixel].rgb[channel])));
+            let (mean, variance) =
+                mean_and_variance(films.iter().map(|film| f64::from(film.pixels[pixel].rgb[channel])));
             let weight = 1.0 / (mean * mean + 0.01);
             seen += weight * variance;
             for film in &films {
-                told += weight * rgb_of(film, "variance", pixel, channel) / 24.0;
-                let apart = rgb_of(film, "half_a", pixel, channel) - rgb_of(film, "half_b", pixel, channel);
-                halves += weight * 0.25 * apart * apart / 24.0;
+                reported += weight * rgb_of(film, "variance", pixel, channel) / 24.0;
+                let half_difference = rgb_of(film, "half_a", pixel, channel) - rgb_of(film, "half_b", pixel, channel);
+                halves += weight * 0.25 * half_difference * half_difference / 24.0;
             }
         }
     }
     // Samples are distributed more evenly than independent ones, so their variance is an upper bound.
-    assert!(told >= 0.9 * seen && told <= 6.0 * seen, "told {told:.3}, seen {seen:.3}");
+    assert!(reported >= 0.9 * seen && reported <= 6.0 * seen, "told {reported:.3}, seen {seen:.3}");
     assert!((0.5..2.0).contains(&(halves / seen)), "halves {halves:.3}, seen {seen:.3}");
 }
 

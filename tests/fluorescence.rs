@@ -20,18 +20,20 @@ use crate::support::scenes::{EVERY_BRANCH, assert_near, film_of, method, scene};
 
 /// A dye over white paper. Its absorption is bell-shaped, and so is its emission in photons.
 #[derive(Clone, Copy)]
-pub struct Bells {
+pub struct BellDye {
     pub name: &'static str,
     /// Mean and standard deviation in nm of the absorption, whose peak is 0.9, and of the emitted photons.
-    absorbs: [f64; 2],
-    shines: [f64; 2],
+    absorption: [f64; 2],
+    emission: [f64; 2],
     quantum_yield: f64,
 }
 
-pub const YELLOW: Bells = Bells { name: "yellow", absorbs: [450.0, 25.0], shines: [520.0, 20.0], quantum_yield: 0.9 };
-pub const RED: Bells = Bells { name: "red", absorbs: [540.0, 25.0], shines: [600.0, 20.0], quantum_yield: 0.8 };
-pub const BRIGHTENER: Bells =
-    Bells { name: "brightener", absorbs: [365.0, 20.0], shines: [440.0, 22.0], quantum_yield: 0.85 };
+pub const YELLOW: BellDye =
+    BellDye { name: "yellow", absorption: [450.0, 25.0], emission: [520.0, 20.0], quantum_yield: 0.9 };
+pub const RED: BellDye =
+    BellDye { name: "red", absorption: [540.0, 25.0], emission: [600.0, 20.0], quantum_yield: 0.8 };
+pub const BRIGHTENER: BellDye =
+    BellDye { name: "brightener", absorption: [365.0, 20.0], emission: [440.0, 22.0], quantum_yield: 0.85 };
 
 fn bell([middle, deviation]: [f64; 2], nm: f64) -> f64 {
     libm::exp(-0.5 * ((nm - middle) / deviation).powi(2))
@@ -41,9 +43,9 @@ fn samples(value: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
     visible::wavelengths().map(|nm| [nm, value(nm)]).collect()
 }
 
-impl Bells {
+impl BellDye {
     pub fn absorbed(&self, nm: f64) -> f64 {
-        0.9 * bell(self.absorbs, nm)
+        0.9 * bell(self.absorption, nm)
     }
 
     pub fn reflected(&self, nm: f64) -> f64 {
@@ -52,7 +54,7 @@ impl Bells {
 
     /// Returns the emitted power per nm, normalized to a total of 1.
     pub fn glow(&self) -> Vec<f64> {
-        let power: Vec<f64> = visible::wavelengths().map(|nm| bell(self.shines, nm) / nm).collect();
+        let power: Vec<f64> = visible::wavelengths().map(|nm| bell(self.emission, nm) / nm).collect();
         let total: f64 = power.iter().sum();
         power.into_iter().map(|x| x / total).collect()
     }
@@ -60,7 +62,7 @@ impl Bells {
     /// Returns the emitted power relative to the power that arrives at a wavelength.
     pub fn excited(&self, nm: f64) -> f64 {
         let [power, photons] =
-            [1.0, 0.0].map(|by| visible::wavelengths().map(|nm| bell(self.shines, nm) / nm.powf(by)).sum::<f64>());
+            [1.0, 0.0].map(|by| visible::wavelengths().map(|nm| bell(self.emission, nm) / nm.powf(by)).sum::<f64>());
         self.quantum_yield * self.absorbed(nm) * nm * power / photons
     }
 
@@ -75,7 +77,7 @@ impl Bells {
             "diffuse = {{ reflectance = {}, fluorescence = {{ absorption = {}, emission = {}, quantum_yield = {} }} }}",
             written(samples(|nm| self.reflected(nm))),
             written(samples(|nm| self.absorbed(nm))),
-            written(samples(|nm| 1e3 * bell(self.shines, nm) / nm)),
+            written(samples(|nm| 1e3 * bell(self.emission, nm) / nm)),
             self.quantum_yield
         )
     }
@@ -89,7 +91,7 @@ pub fn light(name: &str) -> Vec<f64> {
 
 /// Converts a spectrum to linear Rec.709.
 pub fn color(spectrum: &[f64]) -> [f64; 3] {
-    apply(&ColorSpace::Rec709.of_xyz(), visible::xyz(spectrum))
+    apply(&ColorSpace::Rec709.matrix_from_xyz(), visible::xyz(spectrum))
 }
 
 pub fn lanes(scene: &Scene<Curve>, basis: Basis) -> Method {
@@ -104,7 +106,7 @@ pub fn pixel(text: &str) -> [f64; 3] {
 }
 
 /// Asserts that each channel is within a fraction of the strongest one.
-pub fn near(found: [f64; 3], expected: [f64; 3], share: f64, what: &str) {
+pub fn assert_color(found: [f64; 3], expected: [f64; 3], share: f64, what: &str) {
     let strongest = expected.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
     let off = (0..3).map(|c| (found[c] - expected[c]).abs() / strongest).fold(0.0, larger);
     println!("{what}: {off:.1e}");

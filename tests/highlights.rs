@@ -11,7 +11,7 @@ use abbe::film::Layer;
 use abbe::plan::plan;
 use abbe::trace::Method;
 
-use crate::support::scenes::{Mean, film_of, films_of, rendered_with, scene};
+use crate::support::scenes::{Mean, film_of, films_of, render_text_with, scene};
 
 /// Radius of the ball and height of the view in scene units, and pixels along each side.
 const RADIUS: f64 = 0.4;
@@ -63,7 +63,7 @@ fn a_mirroring_ball_shows_the_light_of_the_sun_wherever_it_stands_however_small_
         assert_eq!(method.highlights.len(), 1, "{toward:?}");
         mean.assert_near(mirrored(0.8), 3 * suns.len(), &format!("toward {toward:?}, {diameter} degrees"));
         // 128 samples of each pixel: without aim, one in 3000 or fewer would hit the sun.
-        assert!(mean.worst_error(mirrored(0.8)) < 0.04, "toward {toward:?}: {:?}", mean.error);
+        assert!(mean.worst_relative_error(mirrored(0.8)) < 0.04, "toward {toward:?}: {:?}", mean.error);
     }
 }
 
@@ -74,7 +74,7 @@ fn every_filter_shows_all_light_of_a_highlight() {
         let film = format!(", filter = \"{filter}\"");
         let (_, mean) = films(&view(&film, "mirror.reflectance = 0.8", &sun([0.3, 1.0, 0.8], 0.533)), 0..16);
         mean.assert_near(mirrored(0.8), 3 * filters.len(), filter);
-        assert!(mean.worst_error(mirrored(0.8)) < 0.05, "{filter}: {:?}", mean.error);
+        assert!(mean.worst_relative_error(mirrored(0.8)) < 0.05, "{filter}: {:?}", mean.error);
     }
 }
 
@@ -101,7 +101,7 @@ fn aimed_samples_find_what_plain_samples_find() {
         let aimed = Mean::over_seeds(&films_of(&scene, &method, 0..32));
         let plain = Method { highlights: Vec::new(), samples: 4096, ..method };
         let plain = Mean::over_seeds(&films_of(&scene, &plain, 100..132));
-        aimed.beside(&plain).assert_near(plain.value, 3 * cases.len(), name);
+        aimed.exr_path(&plain).assert_near(plain.value, 3 * cases.len(), name);
     }
 }
 
@@ -109,7 +109,7 @@ fn aimed_samples_find_what_plain_samples_find() {
 fn layers_have_the_light_of_highlights() {
     let text = view(", filter = \"mitchell\"", "plastic.reflectance = 0.3", &sun([0.3, 1.0, 0.8], 0.533));
     let options = Options { layers: Some(Layer::all().to_vec()), threads: Some(1), ..Options::default() };
-    let with = rendered_with(&text, &options);
+    let with = render_text_with(&text, &options);
     let sum = |names: &[&str]| -> f64 {
         let layer = |name: &&str| with.layer(&format!("{name}.G")).unwrap_or_else(|| panic!("no layer {name}"));
         names.iter().flat_map(layer).map(f64::from).sum()

@@ -16,7 +16,7 @@ use abbe::trace::{Effort, Method, SkyOpenings, World, pilot_noise, prepare, rend
 
 use crate::support::larger::larger;
 use crate::support::scenes::{
-    SPLITTING, body, environment, film_of, method, moments, quad, scene, standard_errors, view,
+    SPLITTING, body, environment, film_of, mean_and_variance, method, quad, scene, sigma_limit, view,
 };
 
 const WHITE: &str = "diffuse = { reflectance = 0.7 }";
@@ -48,7 +48,7 @@ fn lamp() -> String {
 }
 
 /// Returns a lamp that lights only the ceiling.
-fn up() -> String {
+fn ceiling_lamp() -> String {
     let material = "emissive = { radiance = { rgb = [30, 25, 20] }, sides = \"front\" }";
     body("lamp", material, &[&quad([-0.8, 1.8, -0.4], [0.5, 0.0, 0.0], [0.0, 0.0, -0.4])])
 }
@@ -225,11 +225,15 @@ fn rooms() -> Vec<(&'static str, String)> {
         ),
         (
             "one diffuse bounce by a mirror",
-            room(WHITE, "diffuse_bounces = 1", &[up(), screen("mirror = { reflectance = 0.95 }")]),
+            room(WHITE, "diffuse_bounces = 1", &[ceiling_lamp(), screen("mirror = { reflectance = 0.95 }")]),
         ),
         (
             "two diffuse bounces by rough metal",
-            room(WHITE, "diffuse_bounces = 2", &[up(), screen("conductor = { metal = \"gold\", roughness = 0.4 }")]),
+            room(
+                WHITE,
+                "diffuse_bounces = 2",
+                &[ceiling_lamp(), screen("conductor = { metal = \"gold\", roughness = 0.4 }")],
+            ),
         ),
         (
             "one diffuse bounce by smooth plastic",
@@ -237,7 +241,7 @@ fn rooms() -> Vec<(&'static str, String)> {
                 WHITE,
                 "diffuse_bounces = 1",
                 &[
-                    up(),
+                    ceiling_lamp(),
                     screen("plastic = { reflectance = 0.3, index = 2.5 }"),
                     body(
                         "cover",
@@ -274,22 +278,22 @@ fn rooms() -> Vec<(&'static str, String)> {
 }
 
 /// Returns a world with light vertices if it has light that can be followed.
-fn looking(world: &World) -> World {
+fn add_light_vertices(world: &World) -> World {
     with_light_vertices(world, &SkyOpenings::default()).unwrap_or_else(|| world.clone())
 }
 
 /// Returns how many times as long the same error takes without light vertices.
 fn gain(world: &World) -> Option<f64> {
-    pilot_noise(&looking(world)).gain_over(&pilot_noise(world), &[]).map(Effort::judged)
+    pilot_noise(&add_light_vertices(world)).gain_over(&pilot_noise(world), &[]).map(Effort::judged)
 }
 
 /// Renders images by a method that `change` modifies, either without light vertices or with those that `with` adds.
 fn films(text: &str, change: &dyn Fn(&mut Method), with: Option<&dyn Fn(&World) -> World>, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
     let film = |seed: u64| {
-        let mut asked = Method { seed, ..method(&scene, SPLITTING) };
-        change(&mut asked);
-        let plain = prepare(&scene, asked);
+        let mut setup = Method { seed, ..method(&scene, SPLITTING) };
+        change(&mut setup);
+        let plain = prepare(&scene, setup);
         render(&with.map_or(plain.clone(), |with| with(&plain)), &|_| ()).0
     };
     (0..seeds).map(film).collect()
@@ -297,14 +301,14 @@ fn films(text: &str, change: &dyn Fn(&mut Method), with: Option<&dyn Fn(&World) 
 
 /// Returns the mean of a quarter of an image in a band. Its standard error is taken from seed to seed, because pixels
 /// share light paths.
-fn of_quarter(films: &[Film], quarter: usize, band: usize) -> (f64, f64) {
-    let of_film = |film: &Film| {
+fn quarter_mean(films: &[Film], quarter: usize, band: usize) -> (f64, f64) {
+    let quarter_of = |film: &Film| {
         let half = film.width as usize / 2;
         let in_quarter = |i: &usize| (i % (2 * half)) / half + 2 * (i / (2 * half) / half) == quarter;
         let pixels = (0..film.pixels.len()).filter(in_quarter);
         pixels.map(|i| f64::from(film.pixels[i].rgb[band])).sum::<f64>() / (half * half) as f64
     };
-    let (mean, variance) = moments(films.iter().map(of_film));
+    let (mean, variance) = mean_and_variance(films.iter().map(quarter_of));
     (mean, (variance / films.len() as f64).sqrt())
 }
 
@@ -322,12 +326,12 @@ fn assert_same(
     assert!(plain[0] != resampled[0], "{what}: no light vertices are looked at");
     let mut worst = 0.0_f64;
     for (quarter, band) in (0..4).flat_map(|quarter| (0..3).map(move |band| (quarter, band))) {
-        let [(a, of_a), (b, of_b)] = [&plain, &resampled].map(|films| of_quarter(films, quarter, band));
-        let error = libm::hypot(of_a, of_b);
+        let [(a, error_a), (b, error_b)] = [&plain, &resampled].map(|films| quarter_mean(films, quarter, band));
+        let error = libm::hypot(error_a, error_b);
         let off = (a - b).abs() / error;
         assert!(
             // Means of 16 films have the heavier tails of Student's t distribution.
-            off < 1.25 * standard_errors(12 * claims),
+            off < 1.25 * sigma_limit(12 * claims),
             "{what}: quarter {quarter}, band {band}: {b} for {a} +- {error:.1e}, off by {off:.1} sigma"
         );
         worst = larger(worst, off);
@@ -348,17 +352,17 @@ fn light_vertices_know_what_is_dispersed() {
         text.replace("height = 12\n", "height = 12\nlayers = [\"dispersed\"]\n").replace("samples = 8", "samples = 32");
     let share = |with: Option<&dyn Fn(&World) -> World>| {
         let films = films(&text, &|_| {}, with, SEEDS);
-        moments(films.iter().map(|film| {
+        mean_and_variance(films.iter().map(|film| {
             let layer = film.layers.iter().find(|layer| layer.layer == Layer::Dispersed).expect("it was asked for");
             let mean = |numbers: &mut dyn Iterator<Item = f32>| numbers.map(f64::from).sum::<f64>();
             mean(&mut layer.values.iter().copied()) / mean(&mut film.pixels.iter().flat_map(|pixel| pixel.rgb))
         }))
     };
-    let [plain, resampled] = [share(None), share(Some(&looking))];
+    let [plain, resampled] = [share(None), share(Some(&add_light_vertices))];
     let error = ((plain.1 + resampled.1) / SEEDS as f64).sqrt();
     println!("dispersed: {} and {} +- {error:.1e}", plain.0, resampled.0);
     assert!(plain.0 > 0.1 && error < 0.02 * plain.0, "{plain:?}");
-    assert!((plain.0 - resampled.0).abs() < 1.25 * standard_errors(1) * error, "{resampled:?} for {plain:?}");
+    assert!((plain.0 - resampled.0).abs() < 1.25 * sigma_limit(1) * error, "{resampled:?} for {plain:?}");
 }
 
 /// Quarters of images of all rooms have the same means with light vertices and without.
@@ -367,7 +371,7 @@ fn light_vertices_change_no_mean() {
     let rooms = rooms();
     for (what, text) in &rooms {
         let gain = gain(&prepare(&scene(text), method(&scene(text), SPLITTING)));
-        let worst = assert_same(what, text, &|_| (), &looking, rooms.len());
+        let worst = assert_same(what, text, &|_| (), &add_light_vertices, rooms.len());
         println!("{what}: at most {worst:.1} sigma, gain {:.1}", gain.expect("there is noise"));
     }
 }
@@ -389,16 +393,16 @@ fn light_vertices_carry_all_bands() {
     );
     let basis = plan(&scene(&text)).method.basis;
     assert!(basis.fixed_lanes() > 4 && !basis.draws_wavelengths(), "{}", basis.name());
-    assert_same("twelve bands", &text, &|method| method.basis = basis.clone(), &looking, 1);
+    assert_same("twelve bands", &text, &|method| method.basis = basis.clone(), &add_light_vertices, 1);
 }
 
 /// Asserts that quarters of images show a closed form in the second band, within the noise and an allowed fraction of
 /// it. The noise must be less than another fraction.
 fn assert_shows(what: &str, films: &[Film], expected: f64, [allowed, noise]: [f64; 2]) {
     for quarter in 0..4 {
-        let (mean, error) = of_quarter(films, quarter, 1);
+        let (mean, error) = quarter_mean(films, quarter, 1);
         println!("{what}: {mean:.6} +- {error:.1e} for {expected:.6}");
-        assert!((mean - expected).abs() < standard_errors(12) * error + allowed * expected, "{what}: {mean}");
+        assert!((mean - expected).abs() < sigma_limit(12) * error + allowed * expected, "{what}: {mean}");
         assert!(error < noise * expected, "{what}: {error}");
     }
 }
@@ -417,7 +421,7 @@ fn an_integrating_sphere_shows_its_closed_form() {
                 &["sphere = { center = [0, 0, 0], radius = 2 }"],
             );
         let expected = reflectance / PI * (2.0 / 4.0) / (1.0 - reflectance);
-        let films = films(&text, &|_| (), Some(&looking), SEEDS);
+        let films = films(&text, &|_| (), Some(&add_light_vertices), SEEDS);
         assert_shows(&format!("reflectance {reflectance}"), &films, expected, [1e-6, 0.01]);
     }
 }
@@ -445,14 +449,14 @@ fn rooms_with_light_that_light_paths_miss_have_no_light_vertices() {
 #[test]
 fn parts_of_an_image_are_the_same_as_the_whole() {
     let text = room(WHITE, "", &[lamp(), ball("glass", "dielectric = { index = 1.5 }")]);
-    let whole = films(&text, &|_| (), Some(&looking), 1).remove(0);
+    let whole = films(&text, &|_| (), Some(&add_light_vertices), 1).remove(0);
     let crop = abbe::film::Window { left: 5, top: 4, width: 3, height: 2 };
     for (threads, crop, overscan) in [(1, Some(crop), 0), (2, Some(crop), 0), (3, Some(crop), 3), (1, None, 3)] {
         let mut part = scene(&text);
         (part.film.crop, part.film.overscan) = (crop, abbe::film::Overscan::even(overscan));
-        let asked = Method { light_vertices: true, ..method(&part, SPLITTING) };
+        let setup = Method { light_vertices: true, ..method(&part, SPLITTING) };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let part = pool.install(|| film_of(&part, asked));
+        let part = pool.install(|| film_of(&part, setup));
         let mut compared = 0;
         for (i, pixel) in (0_i32..).zip(&part.pixels) {
             let [x, y] = [part.corner[0] + i % part.width as i32, part.corner[1] + i / part.width as i32];
@@ -470,9 +474,9 @@ fn parts_of_an_image_are_the_same_as_the_whole() {
 fn the_plan_weighs_light_vertices() {
     let larger = |text: &str| text.replace("width = 12\nheight = 12", "width = 384\nheight = 384");
     let closed = larger(&room(WHITE, "", &[lamp()]));
-    let decided = plan(&scene(&closed));
-    assert!(decided.method.light_vertices, "{:?}", decided.because);
-    assert!(decided.because.iter().any(|line| line.contains("light vertices")), "{:?}", decided.because);
+    let planned = plan(&scene(&closed));
+    assert!(planned.method.light_vertices, "{:?}", planned.because);
+    assert!(planned.because.iter().any(|line| line.contains("light vertices")), "{:?}", planned.because);
     let black = larger(&room("diffuse = { reflectance = 0.01 }", "", &[lamp()]));
     assert!(!plan(&scene(&black)).method.light_vertices);
     let direct = larger(&room(WHITE, "diffuse_bounces = 0", &[lamp()]));
@@ -483,7 +487,7 @@ fn the_plan_weighs_light_vertices() {
 /// A faint lamp would have only a few vertices, and its layer would be too bright or too dark as a whole.
 #[test]
 fn layers_of_faint_lamps_have_no_light_vertices() {
-    let decided = |times: f64, layers: &str| {
+    let planned = |times: f64, layers: &str| {
         let faint = body(
             "faint",
             &format!("emissive = {{ radiance = {} }}", 8.0 * times),
@@ -495,8 +499,8 @@ fn layers_of_faint_lamps_have_no_light_vertices() {
     for (times, layers, expected) in
         [(0.1, "", true), (0.1, "\"lights\"", false), (0.5, "\"lights\"", true), (0.0, "\"lights\"", true)]
     {
-        let decided = decided(times, layers);
-        assert_eq!(decided.method.light_vertices, expected, "{times} {layers}: {:?}", decided.because);
+        let planned = planned(times, layers);
+        assert_eq!(planned.method.light_vertices, expected, "{times} {layers}: {:?}", planned.because);
     }
 }
 
@@ -506,11 +510,11 @@ fn layers_of_faint_lamps_have_no_light_vertices() {
 #[test]
 fn vertices_far_outside_of_a_room_are_seldom_tried() {
     let text = std::fs::read_to_string("scenes/smallpt.toml").expect("it comes with Abbe");
-    let decided = plan(&scene(&text));
-    assert!(decided.method.light_vertices, "{:?}", decided.because);
+    let planned = plan(&scene(&text));
+    assert!(planned.method.light_vertices, "{:?}", planned.because);
     let small = scene(&text.replace("width = 1024\nheight = 768", "width = 256\nheight = 192"));
     for seed in 0..3 {
-        let plain = Method { seed, light_vertices: false, ..decided.method.clone() };
+        let plain = Method { seed, light_vertices: false, ..planned.method.clone() };
         let gain = gain(&prepare(&small, plain));
         println!("smallpt, seed {seed}: gain {gain:?}");
         assert!(gain.is_some_and(|gain| gain > 1.75), "{gain:?}");

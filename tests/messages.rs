@@ -38,21 +38,21 @@ impl<'a> Case<'a> {
     fn new(text: &'a str) -> Self {
         let (title, rest) = text.split_once('\n').expect("a heading ends its line");
         let (patch, expected) = rest.split_once("\n\n").expect("a blank line ends the patch");
-        let (mut taken, mut put, mut files) = (Vec::new(), Vec::new(), Vec::<(&str, String)>::new());
+        let (mut removed, mut added, mut files) = (Vec::new(), Vec::new(), Vec::<(&str, String)>::new());
         let mut settings = Vec::new();
         for line in patch.lines() {
             let (mark, line) = line.split_at(1);
             let line = line.strip_prefix(' ').unwrap_or(line);
             match mark {
-                "-" => taken.push(line),
-                "+" => put.push(line),
+                "-" => removed.push(line),
+                "+" => added.push(line),
                 "=" => settings.push(line),
                 "@" => files.push((line, String::new())),
                 ">" => files.last_mut().expect("a file has a name").1 += &format!("{line}\n"),
                 other => panic!("{title}: what is {other}?"),
             }
         }
-        Self { title, scene: patched(title, &taken, &put), files, settings, expected: expected.trim_end() }
+        Self { title, scene: patched(title, &removed, &added), files, settings, expected: expected.trim_end() }
     }
 
     /// Creates a folder with the scene and its files.
@@ -68,25 +68,25 @@ impl<'a> Case<'a> {
     /// Returns what is wrong with the answer to a scene that must be refused, if anything.
     fn failure(&self) -> Option<String> {
         let folder = self.folder();
-        let before = folder.listing();
+        let before = folder.file_names();
         // A check and a render refuse a scene with the same words, and neither leaves anything behind.
         for flag in ["--check", "--exr"] {
             let settings = self.settings.iter().flat_map(|setting| ["--set", setting]);
             let answer = render(&folder, &[flag, "scene.toml"].into_iter().chain(settings).collect::<Vec<_>>());
-            let told = answer.stderr.trim_end();
-            let answered = answer.code == Some(2) && answer.stdout.is_empty() && told == self.expected;
+            let reported = answer.stderr.trim_end();
+            let answered = answer.code == Some(2) && answer.stdout.is_empty() && reported == self.expected;
             if !answered {
-                return Some(format!("## {}\n\n{told}\n\n(exit code {:?})", self.title, answer.code));
+                return Some(format!("## {}\n\n{reported}\n\n(exit code {:?})", self.title, answer.code));
             }
-            if folder.listing() != before {
-                return Some(format!("## {}\n\nleaves {:?}", self.title, folder.listing()));
+            if folder.file_names() != before {
+                return Some(format!("## {}\n\nleaves {:?}", self.title, folder.file_names()));
             }
         }
         None
     }
 
     /// Returns what is wrong with the answer to a scene that must be accepted with warnings, if anything.
-    fn unwarned(&self) -> Option<String> {
+    fn warning_failure(&self) -> Option<String> {
         let folder = self.folder();
         let answer = render(&folder, &["--check", "scene.toml"]);
         if answer.code != Some(0) || answer.stderr.trim_end() != self.expected {
@@ -102,15 +102,16 @@ impl<'a> Case<'a> {
     }
 }
 
-fn patched(title: &str, taken: &[&str], put: &[&str]) -> String {
+fn patched(title: &str, removed: &[&str], added: &[&str]) -> String {
     let mut lines: Vec<&str> = BASE.lines().collect();
-    let places: Vec<usize> = (0..lines.len()).filter(|&i| !taken.is_empty() && lines[i..].starts_with(taken)).collect();
-    let at = match (taken, places.as_slice()) {
+    let places: Vec<usize> =
+        (0..lines.len()).filter(|&i| !removed.is_empty() && lines[i..].starts_with(removed)).collect();
+    let at = match (removed, places.as_slice()) {
         ([], _) => lines.len(),
         (_, [place]) => *place,
         _ => panic!("{title}: the lines taken out stand in the base scene {} times", places.len()),
     };
-    lines.splice(at..at + taken.len(), put.iter().copied());
+    lines.splice(at..at + removed.len(), added.iter().copied());
     lines.join("\n") + "\n"
 }
 
@@ -134,25 +135,25 @@ fn the_base_scene_itself_is_valid() {
 }
 
 #[test]
-fn a_program_whose_main_fails_says_what_a_person_is_told() {
-    let wrong = |scene: abbe::Result<abbe::Scene>| format!("{:?}", scene.expect_err("it is wrong"));
-    let told = "there is no scene file absent.toml (a scene is a TOML file, such as scene.toml)";
-    assert_eq!(wrong(abbe::Scene::read("absent.toml")), told);
-    let told = wrong(abbe::Scene::parse(&BASE.replace("width = 4", "widht = 4"), ""));
+fn a_program_whose_main_fails_prints_the_same_message() {
+    let error_text = |scene: abbe::Result<abbe::Scene>| format!("{:?}", scene.expect_err("it is wrong"));
+    let reported = "there is no scene file absent.toml (a scene is a TOML file, such as scene.toml)";
+    assert_eq!(error_text(abbe::Scene::read("absent.toml")), reported);
+    let reported = error_text(abbe::Scene::parse(&BASE.replace("width = 4", "widht = 4"), ""));
     assert!(
-        told.starts_with("scene.toml:") && told.ends_with(": unknown key `widht` (did you mean `width`?)"),
-        "{told}"
+        reported.starts_with("scene.toml:") && reported.ends_with(": unknown key `widht` (did you mean `width`?)"),
+        "{reported}"
     );
-    assert_eq!(told.lines().count(), 1);
+    assert_eq!(reported.lines().count(), 1);
 }
 
 #[test]
-fn unknown_keys_names_and_kinds_are_told_with_the_nearest_right_one() {
+fn unknown_keys_names_and_kinds_are_reported_with_the_nearest_correct_one() {
     check("keys.txt", 65);
 }
 
 #[test]
-fn what_is_missing_is_told_where_it_is_missing() {
+fn what_is_missing_is_reported_where_it_is_missing() {
     check("missing.txt", 20);
 }
 
@@ -162,7 +163,7 @@ fn two_kinds_in_one_place_are_refused() {
 }
 
 #[test]
-fn values_of_the_wrong_type_are_told_with_what_belongs_there() {
+fn values_of_the_wrong_type_are_reported_with_the_expected_type() {
     check("types.txt", 65);
 }
 
@@ -192,12 +193,12 @@ fn images_that_cannot_light_a_scene_are_refused() {
 }
 
 #[test]
-fn coatings_and_films_that_cannot_be_are_refused() {
+fn impossible_coatings_and_films_are_refused() {
     check("coatings.txt", 13);
 }
 
 #[test]
-fn dyes_that_cannot_be_are_refused() {
+fn impossible_dyes_are_refused() {
     check("fluorescence.txt", 11);
 }
 
@@ -212,8 +213,8 @@ fn images_that_cannot_bend_normals_are_refused() {
 }
 
 #[test]
-fn warnings_are_told_once_and_stop_nothing() {
-    check_with("warnings.txt", 10, |case| case.unwarned());
+fn warnings_are_printed_once_and_stop_nothing() {
+    check_with("warnings.txt", 10, |case| case.warning_failure());
 }
 
 #[test]
@@ -271,19 +272,19 @@ fn a_file_of_another_kind_that_is_given_as_a_scene_is_called_what_it_is() {
 }
 
 #[test]
-fn an_image_without_any_light_is_told_once_and_not_where_it_is_meant() {
+fn an_image_without_light_causes_one_warning_and_none_where_it_is_intended() {
     let dim = BASE.replace("radiance = 1 }", "radiance = 1 }\nvisible_to_camera = false");
     let dim = dim.replace("samples = 1", "samples = 1\nmax_bounces = 0").replace("[0, 4, 0]", "[0, 40, 0]");
     let black = "warning: no light was found in any pixel within max_bounces = 0, so the image is black\n";
-    let told = |scene: &str, flags: &[&str]| {
+    let reported = |scene: &str, flags: &[&str]| {
         let answer = render(&Folder::with("scene.toml", scene), &[&["scene.toml"], flags].concat());
         assert_eq!(answer.code, Some(0), "{}", answer.stderr);
         answer.stderr.matches("warning: ").count() == 1 && answer.stderr.contains(black)
     };
-    assert!(told(&dim, &[]));
-    assert!(!told(&dim, &["--layers", "N"]));
-    assert!(!told(&dim.replace("material = \"gold\"", "material = \"gold\"\nholdout = true"), &[]));
-    assert!(!told(&dim.replace("max_bounces = 0", "max_bounces = 1"), &[]));
+    assert!(reported(&dim, &[]));
+    assert!(!reported(&dim, &["--layers", "N"]));
+    assert!(!reported(&dim.replace("material = \"gold\"", "material = \"gold\"\nholdout = true"), &[]));
+    assert!(!reported(&dim.replace("max_bounces = 0", "max_bounces = 1"), &[]));
     let dark = BASE.replace("radiance = 10 }", "radiance = 0 }").replace("radiance = 1 }", "radiance = 0 }");
     let dark = Folder::with("scene.toml", dark.replace("intensity = 10 }", "intensity = 0 }"));
     let warned = "warning: nothing emits light, so the image will be black\nscene.toml is a valid scene: 7 objects\n";
@@ -297,12 +298,12 @@ fn settings_and_variables_are_refused_where_they_stand() {
 }
 
 #[test]
-fn mistakes_in_included_files_are_told_with_their_file_and_line() {
+fn mistakes_in_included_files_are_reported_with_their_file_and_line() {
     check("includes.txt", 14);
 }
 
 #[test]
-fn text_that_is_not_toml_is_told_in_plain_words() {
+fn text_that_is_not_toml_is_reported_in_plain_words() {
     check("syntax.txt", 25);
 }
 
@@ -317,7 +318,7 @@ fn broken_mesh_files_are_refused_with_the_place_in_the_scene() {
 }
 
 #[test]
-fn several_mistakes_are_told_at_once_in_the_order_of_the_file_and_counted() {
+fn several_mistakes_are_reported_at_once_in_the_order_of_the_file_and_counted() {
     check("several.txt", 14);
 }
 
@@ -327,8 +328,8 @@ fn of_many_mistakes_the_first_twenty_are_shown_and_all_are_counted() {
     let ball = "[[object]]\nshape.sphere = { center = [0, 1, 0], radius = 0 }\nmaterial = \"white\"\n";
     folder.write("scene.toml", format!("{BASE}{}", ball.repeat(27)));
     let answer = render(&folder, &["--check", "scene.toml"]);
-    let told = answer.stderr.matches("error: a radius is a length above 0, not 0\n").count();
-    assert_eq!((answer.code, told), (Some(2), 20), "{}", answer.stderr);
+    let reported = answer.stderr.matches("error: a radius is a length above 0, not 0\n").count();
+    assert_eq!((answer.code, reported), (Some(2), 20), "{}", answer.stderr);
     assert!(answer.stderr.ends_with("\n\n27 mistakes in scene.toml: these and 7 more\n"), "{}", answer.stderr);
 }
 
@@ -340,9 +341,9 @@ fn of_very_many_mistakes_each_has_its_place_and_the_first_hundred_say_what_was_m
     };
     let text = format!("set.wide-lens = 1\n{BASE}{}", (0..300).map(ball).collect::<String>());
     let Err(error) = (Source { path: "scene.toml".into(), text: text.clone() }).compile() else { panic!("a mistake") };
-    let told = error.to_string();
+    let reported = error.to_string();
     let Error::Scene(mistakes) = error else { panic!("{error}") };
-    let lines: Vec<&str> = told.lines().collect();
+    let lines: Vec<&str> = reported.lines().collect();
     assert_eq!((lines.len(), mistakes.len()), (300, 300));
     let mut backward = Lines::default();
     for (i, mistake) in mistakes.iter().enumerate().rev() {
@@ -362,11 +363,11 @@ fn of_very_many_materials_a_hundred_are_named() {
     let count = BASE.matches("[material.").count() + 200 - 100;
     for (material, help) in [("material = \"porcelain\"\n", "the scene defines "), ("", "give it one, as in ")] {
         let folder = Folder::with("scene.toml", format!("{BASE}{more}{ball}{material}"));
-        let told = render(&folder, &["--check", "scene.toml"]).stderr;
+        let reported = render(&folder, &["--check", "scene.toml"]).stderr;
         let line =
-            told.lines().find_map(|line| line.strip_prefix("   = help: ").or(line.trim().strip_prefix("= help: ")));
-        let line = line.unwrap_or_else(|| panic!("{told}"));
-        assert!(line.starts_with(help) && line.ends_with(&format!(" and {count} more")), "{told}");
+            reported.lines().find_map(|line| line.strip_prefix("   = help: ").or(line.trim().strip_prefix("= help: ")));
+        let line = line.unwrap_or_else(|| panic!("{reported}"));
+        assert!(line.starts_with(help) && line.ends_with(&format!(" and {count} more")), "{reported}");
     }
 }
 
@@ -374,7 +375,7 @@ fn of_very_many_materials_a_hundred_are_named() {
 /// and takes no time.
 #[test]
 fn materials_that_are_made_of_too_many_others_are_refused() {
-    let made = |count: usize, second: &dyn Fn(usize) -> String| {
+    let make_scene = |count: usize, second: &dyn Fn(usize) -> String| {
         let mix = |i: usize| {
             format!("[material.x{i}]\nmix = {{ materials = [\"x{}\", \"{}\"], amount = 0.5 }}\n", i + 1, second(i))
         };
@@ -382,8 +383,8 @@ fn materials_that_are_made_of_too_many_others_are_refused() {
         format!("{BASE}{}{last}", (0..count).map(mix).collect::<String>())
     };
     for (text, expected) in [
-        (made(30, &|i| format!("x{}", i + 1)), "error: material \"x0\" is made of more than 1000 others\n"),
-        (made(3000, &|_| "white".into()), "error: material \"x0\" is made of others nested more than 64 deep\n"),
+        (make_scene(30, &|i| format!("x{}", i + 1)), "error: material \"x0\" is made of more than 1000 others\n"),
+        (make_scene(3000, &|_| "white".into()), "error: material \"x0\" is made of others nested more than 64 deep\n"),
     ] {
         let folder = Folder::with("scene.toml", &text);
         let answer = render(&folder, &["--check", "scene.toml"]);
@@ -391,7 +392,7 @@ fn materials_that_are_made_of_too_many_others_are_refused() {
         assert!(answer.stderr.starts_with(expected), "{}", answer.stderr);
         assert_eq!(answer.stderr.matches("error: ").count(), 1, "{}", answer.stderr);
     }
-    let folder = Folder::with("scene.toml", made(8, &|i| format!("x{}", i + 1)));
+    let folder = Folder::with("scene.toml", make_scene(8, &|i| format!("x{}", i + 1)));
     assert_eq!(render(&folder, &["--check", "scene.toml"]).code, Some(0));
 }
 
@@ -441,14 +442,14 @@ fn a_byte_order_mark_does_not_move_the_column() {
 }
 
 #[test]
-fn mistakes_in_a_table_that_a_program_has_built_are_told_by_their_keys() {
+fn mistakes_in_a_table_that_a_program_has_built_are_reported_by_their_keys() {
     let mut scene: abbe::toml::Table = toml::from_str(BASE).expect("TOML");
     assert_eq!(abbe::Scene::from_table(&scene, "").expect("a scene").objects.len(), 7);
-    let told = |scene: &abbe::toml::Table| abbe::Scene::from_table(scene, "").expect_err("mistakes").to_string();
+    let reported = |scene: &abbe::toml::Table| abbe::Scene::from_table(scene, "").expect_err("mistakes").to_string();
     scene["object"][1]["shape"]["sphere"]["radius"] = 0.into();
     scene["material"]["glass"]["dielectric"]["index"] = "N-BK8".into();
     scene["light"][0].as_table_mut().expect("a table").insert("nam".into(), "sky".into());
-    let mut mistakes: Vec<String> = told(&scene).lines().map(str::to_owned).collect();
+    let mut mistakes: Vec<String> = reported(&scene).lines().map(str::to_owned).collect();
     mistakes.sort();
     let expected = [
         "light[0].nam: unknown key `nam` (did you mean `name`?)",
@@ -457,7 +458,7 @@ fn mistakes_in_a_table_that_a_program_has_built_are_told_by_their_keys() {
     ];
     assert_eq!(mistakes, expected);
     scene.remove("film");
-    assert!(told(&scene).starts_with("the scene has no [film] (every scene needs [camera] and [film])\n"));
+    assert!(reported(&scene).starts_with("the scene has no [film] (every scene needs [camera] and [film])\n"));
 }
 
 #[test]

@@ -54,20 +54,20 @@ fn a_film_that_does_not_fit_in_memory_is_refused_and_planned_all_the_same() {
     let (code, plan, _) = run("--plan");
     assert_eq!(code, Some(0));
     assert!(plan.contains("\nfilm: 16384 x 16384 pixels take 19.3 GB of memory\n"), "{plan}");
-    let (code, _, told) = run("--exr");
+    let (code, _, stderr) = run("--exr");
     let expected = "error: cannot keep the film in memory, 19.3 GB: not enough memory is free; --crop and --shard \
                     render a part of the image\n";
-    assert_eq!((code, &*told), (Some(1), expected));
-    assert_eq!(folder.listing(), ["ball.toml"]);
+    assert_eq!((code, &*stderr), (Some(1), expected));
+    assert_eq!(folder.file_names(), ["ball.toml"]);
 }
 
 #[test]
-fn an_image_is_made_though_stderr_cannot_be_written() {
+fn an_image_is_written_although_stderr_cannot_be() {
     for lost in ["2>/dev/full", "2>&-", "2>&- 1>&- <&-", "2>/dev/full >/dev/full", "2>&1 | true"] {
         let folder = folder();
-        let (code, out, told) = shell(&folder, &format!("$RENDER --exr ball.toml --png look.png {lost}"));
-        assert_eq!((code, &*out, &*told), (Some(0), "", ""), "{lost}");
-        assert_eq!(folder.listing(), ["ball.exr", "ball.toml", "look.png"], "{lost}");
+        let (code, out, stderr) = shell(&folder, &format!("$RENDER --exr ball.toml --png look.png {lost}"));
+        assert_eq!((code, &*out, &*stderr), (Some(0), "", ""), "{lost}");
+        assert_eq!(folder.file_names(), ["ball.exr", "ball.toml", "look.png"], "{lost}");
         assert!(is_image(&folder.path_of("ball.exr")), "{lost}");
         // No message ended up in the picture.
         assert_eq!(read_png(&folder.path_of("look.png")).pixels.len(), 6 * 4, "{lost}");
@@ -85,7 +85,7 @@ fn a_reader_of_stderr_that_has_gone_loses_no_image() {
 }
 
 #[test]
-fn a_refusal_that_cannot_be_told_keeps_its_exit_code() {
+fn a_refusal_that_cannot_be_printed_keeps_its_exit_code() {
     let folder = folder();
     folder.write("bad.toml", "camera = 5\n");
     for (arguments, expected) in [
@@ -107,9 +107,9 @@ fn an_answer_that_nobody_reads_to_the_end_is_no_failure() {
     for question in ["--plan ball.toml", "catalog", "--help", "catalog --help", "--version"] {
         // The reader is gone before the first word.
         let line = format!("{{ sleep 0.2; $RENDER {question}; echo $? >code; }} | true");
-        let (_, _, told) = shell(&folder, &format!("{line}; while [ ! -s code ]; do sleep 0.1; done"));
+        let (_, _, stderr) = shell(&folder, &format!("{line}; while [ ! -s code ]; do sleep 0.1; done"));
         let code = fs::read_to_string(folder.path_of("code")).expect("it ended");
-        assert_eq!((&*code, &*told), ("0\n", ""), "{question}");
+        assert_eq!((&*code, &*stderr), ("0\n", ""), "{question}");
         fs::remove_file(folder.path_of("code")).expect("it can be removed");
         assert_eq!(shell(&folder, &format!("$RENDER {question} >&-")).0, Some(0), "{question}");
     }
@@ -120,16 +120,16 @@ fn an_answer_that_nobody_reads_to_the_end_is_no_failure() {
 fn an_answer_that_cannot_be_written_is_a_failure() {
     let folder = folder();
     for question in ["--plan ball.toml", "catalog", "--help", "catalog --help", "--version"] {
-        let (code, _, told) = shell(&folder, &format!("$RENDER {question} >/dev/full"));
+        let (code, _, stderr) = shell(&folder, &format!("$RENDER {question} >/dev/full"));
         let reason = "error: cannot write the answer to stdout: the disk is full\n";
-        assert_eq!((code, &*told), (Some(1), reason), "{question}");
+        assert_eq!((code, &*stderr), (Some(1), reason), "{question}");
         assert_eq!(shell(&folder, &format!("$RENDER {question} >/dev/full 2>/dev/full")).0, Some(1), "{question}");
     }
     // The image is made and kept nevertheless.
     for protocol in ["--json", "--progress openjd"] {
-        let (code, _, told) = shell(&folder, &format!("$RENDER --exr ball.toml {protocol} >/dev/full"));
+        let (code, _, stderr) = shell(&folder, &format!("$RENDER --exr ball.toml {protocol} >/dev/full"));
         let reason = "error: cannot write all output to stdout: the disk is full\n";
-        assert!(code == Some(1) && told.ends_with(reason), "{protocol}: {told}");
+        assert!(code == Some(1) && stderr.ends_with(reason), "{protocol}: {stderr}");
         assert!(is_image(&folder.path_of("ball.exr")), "{protocol}");
         fs::remove_file(folder.path_of("ball.exr")).expect("it is there");
     }
@@ -163,17 +163,17 @@ fn a_link_that_leads_nowhere_is_refused_before_anything_is_rendered() {
     symlink("a.exr", folder.path_of("b.exr")).expect("links can be made");
     symlink(".", folder.path_of("here.exr")).expect("links can be made");
     symlink("ball.toml", folder.path_of("scene.exr")).expect("links can be made");
-    for (output, code, told) in [
+    for (output, code, stderr) in [
         ("a.exr", 1, "error: cannot write a.exr: it is a link that leads back to itself\n"),
         ("here.exr", 1, "error: cannot write here.exr: it is a folder\n"),
     ] {
         let answer = render(&folder, &["ball.toml", "--exr", output]);
-        assert_eq!((answer.code, &*answer.stdout, &*answer.stderr), (Some(code), "", told));
+        assert_eq!((answer.code, &*answer.stdout, &*answer.stderr), (Some(code), "", stderr));
     }
     let answer = render(&folder, &["ball.toml", "--exr", "scene.exr"]);
     assert_eq!(answer.code, Some(2));
     assert!(answer.stderr.ends_with("scene.exr is the scene itself\nhelp: name another file\n"), "{}", answer.stderr);
-    assert_eq!(folder.listing(), ["a.exr", "b.exr", "ball.toml", "here.exr", "scene.exr"]);
+    assert_eq!(folder.file_names(), ["a.exr", "b.exr", "ball.toml", "here.exr", "scene.exr"]);
     assert_eq!(fs::read_to_string(folder.path_of("ball.toml")).expect("the scene is there"), SCENE);
 }
 
@@ -184,7 +184,7 @@ fn a_render_that_is_refused_leaves_no_folders() {
     for refused in [&["--png", "ball.toml/a.png"][..], &["--plan-file", "no.plan", "--png", "new/other/a.png"]] {
         let answer = new(refused);
         assert!(matches!(answer.code, Some(1 | 2)), "{}", answer.stderr);
-        assert_eq!(folder.listing(), ["ball.toml"]);
+        assert_eq!(folder.file_names(), ["ball.toml"]);
     }
     // Folders that are not empty are kept.
     folder.write("new/notes", "of today");
@@ -220,7 +220,7 @@ fn permissions_of_an_image_survive_and_a_protected_one_is_left_alone() {
     let answer = render(&folder, &["ball.toml"]);
     assert_eq!((answer.code, &*answer.stderr), (Some(1), "error: cannot write ball.exr: permission is denied\n"));
     assert_eq!(fs::read(&path).expect("it is there"), b"an older image");
-    assert_eq!(folder.listing(), ["ball.exr", "ball.toml"]);
+    assert_eq!(folder.file_names(), ["ball.exr", "ball.toml"]);
 }
 
 #[test]
@@ -238,9 +238,9 @@ fn the_longest_names_can_be_written() {
     let (folder, name) = (folder(), format!("{}.exr", "a".repeat(251)));
     let answer = render(&folder, &["ball.toml", "--exr", &name]);
     assert_eq!(answer.code, Some(0), "{}", answer.stderr);
-    assert_eq!(folder.listing(), [&*name, "ball.toml"]);
+    assert_eq!(folder.file_names(), [&*name, "ball.toml"]);
     let answer = render(&folder, &["ball.toml", "--exr", &format!("a{name}")]);
-    assert_eq!((answer.code, folder.listing().len()), (Some(1), 2), "{}", answer.stderr);
+    assert_eq!((answer.code, folder.file_names().len()), (Some(1), 2), "{}", answer.stderr);
 }
 
 #[test]
@@ -249,14 +249,14 @@ fn what_is_no_file_is_written_to_as_it_is() {
     for (link, device) in [("null.exr", "/dev/null"), ("stdout.exr", "/dev/stdout")] {
         symlink(device, folder.path_of(link)).expect("links can be made");
     }
-    let (code, out, told) = shell(&folder, "$RENDER ball.toml --exr null.exr | cat");
-    assert_eq!((code, &*out), (Some(0), ""), "{told}");
-    let (_, out, told) = shell(&folder, "$RENDER ball.toml --exr stdout.exr | head -c 4 | od -An -tx1");
-    assert_eq!(out.trim(), "76 2f 31 01", "{told}");
-    let (_, out, told) =
+    let (code, out, stderr) = shell(&folder, "$RENDER ball.toml --exr null.exr | cat");
+    assert_eq!((code, &*out), (Some(0), ""), "{stderr}");
+    let (_, out, stderr) = shell(&folder, "$RENDER ball.toml --exr stdout.exr | head -c 4 | od -An -tx1");
+    assert_eq!(out.trim(), "76 2f 31 01", "{stderr}");
+    let (_, out, stderr) =
         shell(&folder, "mkfifo pipe.exr; $RENDER ball.toml --exr pipe.exr & head -c 4 pipe.exr | od -An -tx1; wait");
-    assert_eq!(out.trim(), "76 2f 31 01", "{told}");
-    assert_eq!(folder.listing(), ["ball.toml", "null.exr", "pipe.exr", "stdout.exr"]);
+    assert_eq!(out.trim(), "76 2f 31 01", "{stderr}");
+    assert_eq!(folder.file_names(), ["ball.toml", "null.exr", "pipe.exr", "stdout.exr"]);
 }
 
 #[cfg(target_os = "linux")]
@@ -285,8 +285,8 @@ fn what_can_be_written_is_written() {
         assert!(answer.stderr.ends_with(&format!("error: cannot write {}: the disk is full\n", files[failing])));
         assert_eq!(answer.code, Some(1), "{}", answer.stderr);
         let written: Vec<&str> = files[3..].iter().copied().filter(|name| folder.path_of(name).is_file()).collect();
-        let told: Vec<&str> = answer.stderr.lines().filter_map(|line| line.strip_prefix("wrote ")).collect();
-        assert_eq!((written.len(), &told), (2, &written), "{}", answer.stderr);
+        let stderr: Vec<&str> = answer.stderr.lines().filter_map(|line| line.strip_prefix("wrote ")).collect();
+        assert_eq!((written.len(), &stderr), (2, &written), "{}", answer.stderr);
         // Only the missing file is left to be written.
         fs::remove_file(folder.path_of(files[failing])).expect("it is there");
         let resumed = render(&folder, &[&words[..], &["--resume"]].concat());
@@ -338,7 +338,7 @@ fn no_output_takes_the_place_of_what_the_scene_is_read_from() {
 }
 
 #[test]
-fn no_words_take_the_place_of_an_image() {
+fn no_text_file_takes_the_place_of_an_image() {
     let folder = folder();
     folder.write("old.exr", "an image of last week");
     for (arguments, message, help) in [
@@ -360,7 +360,7 @@ fn no_words_take_the_place_of_an_image() {
         let answer = render(&folder, &words);
         let message = format!("error: {message}\nhelp: for instance: {help}\n");
         assert_eq!((answer.code, answer.stderr), (Some(2), message), "{arguments}");
-        assert_eq!(folder.listing(), ["ball.toml", "old.exr"], "{arguments}");
+        assert_eq!(folder.file_names(), ["ball.toml", "old.exr"], "{arguments}");
     }
     assert_eq!(folder.read("old.exr"), b"an image of last week");
 }
@@ -380,6 +380,6 @@ fn no_two_outputs_are_one_file() {
         let answer = render(&folder, &words);
         let message = format!("error: {name} would be written twice\nhelp: name another file\n");
         assert_eq!((answer.code, answer.stderr), (Some(2), message), "{arguments}");
-        assert_eq!(folder.listing(), ["ball.toml", "other"], "{arguments}");
+        assert_eq!(folder.file_names(), ["ball.toml", "other"], "{arguments}");
     }
 }

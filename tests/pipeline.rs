@@ -14,7 +14,7 @@ fn folder() -> Folder {
 }
 
 /// Runs `render` with a text on standard input.
-fn fed(folder: &Folder, arguments: &[&str], text: &[u8]) -> Output {
+fn run_with_stdin(folder: &Folder, arguments: &[&str], text: &[u8]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
     command.current_dir(folder.path()).args(arguments);
     let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -32,7 +32,7 @@ fn text(bytes: &[u8]) -> &str {
 }
 
 /// Returns all JSON events of a kind.
-fn told(stdout: &str, kind: &str) -> Vec<Value> {
+fn reported(stdout: &str, kind: &str) -> Vec<Value> {
     let lines =
         stdout.lines().map(|line| serde_json::from_str::<Value>(line).unwrap_or_else(|e| panic!("{line}: {e}")));
     lines.filter(|event| event["kind"] == kind).collect()
@@ -43,15 +43,15 @@ fn a_scene_may_come_from_standard_input_and_an_image_go_to_standard_output() {
     let folder = folder();
     assert_eq!(render(&folder, &["scene.toml", "--exr", "file.exr"]).code, Some(0));
     let file = folder.read("file.exr");
-    let to_file = fed(&folder, &["-", "--exr", "fed.exr"], SCENE.as_bytes());
+    let to_file = run_with_stdin(&folder, &["-", "--exr", "fed.exr"], SCENE.as_bytes());
     assert_eq!((to_file.status.code(), text(&to_file.stdout)), (Some(0), ""), "{}", text(&to_file.stderr));
     assert!(folder.read("fed.exr") == file);
-    let sent = fed(&folder, &["-", "--exr", "-", "--png", "look.png"], SCENE.as_bytes());
+    let sent = run_with_stdin(&folder, &["-", "--exr", "-", "--png", "look.png"], SCENE.as_bytes());
     assert_eq!(sent.status.code(), Some(0), "{}", text(&sent.stderr));
     assert_eq!(sent.stdout, file);
     assert!(text(&sent.stderr).ends_with("wrote look.png\n"), "{}", text(&sent.stderr));
-    assert_eq!(folder.listing(), ["fed.exr", "file.exr", "look.png", "scene.toml"]);
-    let sent = fed(&folder, &["scene.toml", "--exr", "-"], b"");
+    assert_eq!(folder.file_names(), ["fed.exr", "file.exr", "look.png", "scene.toml"]);
+    let sent = run_with_stdin(&folder, &["scene.toml", "--exr", "-"], b"");
     assert_eq!(sent.stdout, file);
 }
 
@@ -60,13 +60,17 @@ fn a_scene_on_standard_input_is_called_so_and_finds_its_files_from_the_current_f
     let folder = folder();
     folder.write("gold.toml", "material.copper.conductor.metal = \"Cu\"\n");
     let scene = format!("include = [\"gold.toml\"]\n{SCENE}");
-    let checked = fed(&folder, &["--check", "-"], format!("\u{feff}{scene}").as_bytes());
+    let checked = run_with_stdin(&folder, &["--check", "-"], format!("\u{feff}{scene}").as_bytes());
     let expected = "warning: material copper is not used by any object\n<stdin> is a valid scene: 7 objects\n";
     assert_eq!((checked.status.code(), text(&checked.stderr)), (Some(0), expected));
-    let wrong = fed(&folder, &["--check", "-"], scene.replace("width = 4", "widht = 4").as_bytes());
+    let wrong = run_with_stdin(&folder, &["--check", "-"], scene.replace("width = 4", "widht = 4").as_bytes());
     assert_eq!(wrong.status.code(), Some(2));
     assert!(text(&wrong.stderr).contains("--> <stdin>:8:1\n"), "{}", text(&wrong.stderr));
-    let latin = fed(&folder, &["--check", "-"], "# é\n# caf".bytes().chain(*b"\xe9\n").collect::<Vec<_>>().as_slice());
+    let latin = run_with_stdin(
+        &folder,
+        &["--check", "-"],
+        "# é\n# caf".bytes().chain(*b"\xe9\n").collect::<Vec<_>>().as_slice(),
+    );
     let expected = "error: the scene on standard input is not text in UTF-8: line 2 has the byte 0xE9 in column 6\n\
                     help: save it as UTF-8\n";
     assert_eq!((latin.status.code(), text(&latin.stderr)), (Some(2), expected));
@@ -100,19 +104,19 @@ fn what_standard_input_and_output_cannot_do_is_refused() {
             "error: --plan renders nothing, so - would not be written\nhelp: leave one of them out\n".into(),
         ),
     ] {
-        let refused = fed(&folder, arguments, SCENE.as_bytes());
+        let refused = run_with_stdin(&folder, arguments, SCENE.as_bytes());
         let answer = (refused.status.code(), text(&refused.stdout), text(&refused.stderr));
         assert_eq!(answer, (Some(2), "", &*expected), "{arguments:?}");
     }
-    let both = fed(&folder, &["scene.toml", "--json", "--exr", "-"], b"");
-    let errors = told(text(&both.stdout), "error");
+    let both = run_with_stdin(&folder, &["scene.toml", "--json", "--exr", "-"], b"");
+    let errors = reported(text(&both.stdout), "error");
     assert_eq!((both.status.code(), text(&both.stderr)), (Some(2), ""));
     assert_eq!(errors[0]["message"], "--json and --exr - would both write to standard output");
-    assert_eq!(folder.listing(), ["scene.toml"]);
+    assert_eq!(folder.file_names(), ["scene.toml"]);
 }
 
 #[test]
-fn with_quiet_warnings_and_errors_alone_are_said() {
+fn with_quiet_only_warnings_and_errors_are_printed() {
     let folder = folder();
     let quiet = render(&folder, &["scene.toml", "--quiet"]);
     assert_eq!((quiet.code, &*quiet.stdout, &*quiet.stderr), (Some(0), "", ""));
@@ -128,25 +132,25 @@ fn with_quiet_warnings_and_errors_alone_are_said() {
 }
 
 #[test]
-fn with_json_every_line_is_an_object_and_nothing_else_is_said() {
+fn with_json_every_line_is_an_object_and_nothing_else_is_printed() {
     let folder = folder();
     let sets = ["--set", "material.copper={mirror={}}"];
     let arguments: Vec<&str> =
         ["scene.toml", "--json", "--exr", "a.exr", "--png", "a.png"].into_iter().chain(sets).collect();
-    let said = render(&folder, &arguments);
-    assert_eq!((said.code, &*said.stderr), (Some(0), ""));
+    let printed = render(&folder, &arguments);
+    assert_eq!((printed.code, &*printed.stderr), (Some(0), ""));
     let kinds: Vec<Value> =
-        said.stdout.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON")["kind"].clone()).collect();
+        printed.stdout.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON")["kind"].clone()).collect();
     assert_eq!(kinds.first().and_then(Value::as_str), Some("warning"));
-    assert_eq!(told(&said.stdout, "plan")[0]["samples"], 1);
-    let progress = told(&said.stdout, "progress").pop().expect("the end is told");
+    assert_eq!(reported(&printed.stdout, "plan")[0]["samples"], 1);
+    let progress = reported(&printed.stdout, "progress").pop().expect("the end is told");
     assert_eq!((&progress["done"], &progress["seconds_left"]), (&progress["total"], &Value::from(0.0)));
-    assert_eq!(told(&said.stdout, "report")[0]["samples"], 12);
-    let written: Vec<Value> = told(&said.stdout, "written").iter().map(|event| event["path"].clone()).collect();
+    assert_eq!(reported(&printed.stdout, "report")[0]["samples"], 12);
+    let written: Vec<Value> = reported(&printed.stdout, "written").iter().map(|event| event["path"].clone()).collect();
     assert_eq!(written, ["a.exr", "a.png"]);
     let planned = render(&folder, &["scene.toml", "--json", "--plan"]);
     let words = render(&folder, &["scene.toml", "--plan"]);
-    let because = &told(&planned.stdout, "plan")[0]["because"];
+    let because = &reported(&planned.stdout, "plan")[0]["because"];
     // Times are measured, so they differ.
     let is_sure = |line: &&str| !line.starts_with("cost: ") && !line.ends_with(" times as long");
     let told_lines = because.as_array().expect("a list").iter().filter_map(Value::as_str);
@@ -168,35 +172,35 @@ fn with_json_mistakes_are_objects_with_their_place() {
     );
     assert_eq!(wrong.stdout, expected);
     let missing = render(&folder, &["scen.toml", "--json"]);
-    let error = &told(&missing.stdout, "error")[0];
+    let error = &reported(&missing.stdout, "error")[0];
     assert_eq!((missing.code, &error["help"]), (Some(2), &Value::from("did you mean scene.toml?")));
     let unwritable = render(&folder, &["scene.toml", "--json", "--exr", "scene.toml/a.exr"]);
-    let error = &told(&unwritable.stdout, "error")[0];
+    let error = &reported(&unwritable.stdout, "error")[0];
     assert_eq!((unwritable.code, &error["file"]), (Some(1), &Value::from("scene.toml/a.exr")));
     let argument = render(&folder, &["scene.toml", "--json", "--sampels", "3"]);
     assert_eq!((argument.code, &*argument.stderr), (Some(2), ""));
-    let error = &told(&argument.stdout, "error")[0];
+    let error = &reported(&argument.stdout, "error")[0];
     assert_eq!(error["message"], "unexpected argument '--sampels' found");
 }
 
 /// Runs `render` with arguments that are separated by blanks, and with progress messages for a render farm.
-fn for_farm(folder: &Folder, words: &str, code: i32) -> Answer {
+fn run_for_farm(folder: &Folder, words: &str, code: i32) -> Answer {
     let answer = render(folder, &words.split(' ').chain(["--progress", "openjd"]).collect::<Vec<_>>());
     assert_eq!(answer.code, Some(code), "{words}: {}", answer.stderr);
-    let said =
+    let printed =
         |line: &str| ["progress", "status", "fail"].iter().any(|kind| line.starts_with(&format!("openjd_{kind}: ")));
-    assert!(answer.stdout.lines().all(said), "{words}: {}", answer.stdout);
+    assert!(answer.stdout.lines().all(printed), "{words}: {}", answer.stdout);
     answer
 }
 
 #[test]
-fn a_farm_is_told_how_far_a_part_is_and_people_read_the_rest_in_its_log() {
+fn a_farm_gets_the_progress_of_a_part_and_people_read_the_rest_in_its_log() {
     let folder = folder();
     for (words, written) in
         [("--shard 1/2 --resume", "a.1-of-2.part"), ("--shard 2/2 --checkpoint 1h", "a.2-of-2.part")]
     {
         let part =
-            for_farm(&folder, &format!("scene.toml --exr a.exr --set material.copper={{mirror={{}}}} {words}"), 0);
+            run_for_farm(&folder, &format!("scene.toml --exr a.exr --set material.copper={{mirror={{}}}} {words}"), 0);
         assert!(part.stdout.contains("openjd_progress: 0.0\n"), "{}", part.stdout);
         let end = part.stdout.split("openjd_progress: 100.0\n").nth(1).expect("the end is told");
         assert!(end.starts_with("openjd_status: rendered in "), "{end}");
@@ -207,25 +211,25 @@ fn a_farm_is_told_how_far_a_part_is_and_people_read_the_rest_in_its_log() {
             part.stderr
         );
     }
-    let merged = for_farm(&folder, "merge a.exr a.1-of-2.part a.2-of-2.part --delete", 0);
+    let merged = run_for_farm(&folder, "merge a.exr a.1-of-2.part a.2-of-2.part --delete", 0);
     assert_eq!((&*merged.stdout, &*merged.stderr), ("openjd_status: wrote a.exr\n", ""));
-    assert_eq!(folder.listing(), ["a.exr", "scene.toml"]);
+    assert_eq!(folder.file_names(), ["a.exr", "scene.toml"]);
 }
 
 #[test]
 fn what_is_no_checkpoint_of_a_part_is_not_deleted_with_it() {
     let folder = folder();
     for part in ["1/2", "2/2"] {
-        for_farm(&folder, &format!("scene.toml --exr a.exr --shard {part}"), 0);
+        run_for_farm(&folder, &format!("scene.toml --exr a.exr --shard {part}"), 0);
     }
     std::fs::create_dir(folder.path_of("a.1-of-2.checkpoint")).unwrap();
-    let merged = for_farm(&folder, "merge a.exr a.1-of-2.part a.2-of-2.part --delete", 0);
+    let merged = run_for_farm(&folder, "merge a.exr a.1-of-2.part a.2-of-2.part --delete", 0);
     assert_eq!(merged.stderr, "");
-    assert_eq!(folder.listing(), ["a.1-of-2.checkpoint", "a.exr", "scene.toml"]);
+    assert_eq!(folder.file_names(), ["a.1-of-2.checkpoint", "a.exr", "scene.toml"]);
 }
 
 #[test]
-fn a_farm_is_told_in_one_line_why_a_task_fails() {
+fn a_farm_gets_one_line_on_why_a_task_fails() {
     let folder = folder();
     for (words, code, why, log) in [
         ("scene.toml --set film.widht=3", 2, "--set:1:6: unknown key `widht`", "= help: did you mean `width`?"),
@@ -255,14 +259,14 @@ fn a_farm_is_told_in_one_line_why_a_task_fails() {
         ),
         ("merge a.exr scene.toml", 2, "scene.toml is not a part of an image", "help: parts are made by --shard"),
     ] {
-        let failed = for_farm(&folder, words, code);
+        let failed = run_for_farm(&folder, words, code);
         assert_eq!(failed.stdout, format!("openjd_fail: {why}\n"), "{words}");
         assert!(failed.stderr.contains(log), "{words}: {}", failed.stderr);
     }
     for flag in ["--json", "--quiet", "--plan", "--check"] {
         let both = render(&folder, &["scene.toml", "--progress", "openjd", flag]);
-        let said = both.stdout + &both.stderr;
-        assert!(both.code == Some(2) && said.contains("cannot be used with"), "{flag}: {said}");
+        let printed = both.stdout + &both.stderr;
+        assert!(both.code == Some(2) && printed.contains("cannot be used with"), "{flag}: {printed}");
     }
 }
 
@@ -278,7 +282,7 @@ fn a_frame_is_a_variable_and_a_number_in_the_names_of_files() {
     frame(&["--frame", "12", "--exr", "out/%d/turn.%04d.exr", "--png", "%d%%.png"]);
     frame(&["--frame", "7"]);
     frame(&["--set", "set.frame=7", "--exr", "seven.exr"]);
-    assert_eq!(folder.listing(), ["12%.png", "out", "scene.toml", "seven.exr", "turn.0007.exr", "turn.toml"]);
+    assert_eq!(folder.file_names(), ["12%.png", "out", "scene.toml", "seven.exr", "turn.0007.exr", "turn.toml"]);
     assert!(folder.path_of("out/12/turn.0012.exr").is_file());
     let bytes = |name: &str| folder.read(name);
     assert_eq!(bytes("seven.exr"), bytes("turn.0007.exr"));
@@ -300,21 +304,21 @@ fn settings_in_any_language_stand_in_the_file() {
     let merged = render(&folder, &["merge", "b.exr", "a.1-of-2.part", "a.2-of-2.part"]);
     assert_eq!(merged.code, Some(0), "{}", merged.stderr);
     for name in ["a.exr", "b.exr"] {
-        let told = render(&folder, &["info", name]).stdout;
-        assert!(told.lines().any(|line| line.contains("render/set") && line.contains(setting)), "{told}");
+        let reported = render(&folder, &["info", name]).stdout;
+        assert!(reported.lines().any(|line| line.contains("render/set") && line.contains(setting)), "{reported}");
     }
 }
 
 #[test]
-fn a_frame_beyond_what_a_value_may_be_is_told_before_any_is_rendered() {
+fn a_frame_with_an_impossible_value_is_reported_before_any_is_rendered() {
     let folder = Folder::new();
     folder.write("zoom.toml", SCENE.replace("vertical_fov = 35", "vertical_fov = \"$frame\""));
     for frames in ["178-181", "178,0,179"] {
         let answer = render(&folder, &["zoom.toml", "--frame", frames, "--exr", "z.%d.exr"]);
         let wrong = if frames == "178-181" { 181 } else { 0 };
-        let told = format!("\nframe {wrong} has a mistake, so no frame is rendered\nerror: ");
-        assert!(answer.code == Some(2) && answer.stderr.contains(&told), "{}", answer.stderr);
-        assert_eq!(folder.listing(), ["zoom.toml"]);
+        let reported = format!("\nframe {wrong} has a mistake, so no frame is rendered\nerror: ");
+        assert!(answer.code == Some(2) && answer.stderr.contains(&reported), "{}", answer.stderr);
+        assert_eq!(folder.file_names(), ["zoom.toml"]);
     }
     // A mistake in all frames is reported for the first of them.
     let answer = render(&folder, &["zoom.toml", "--frame", "181-190", "--exr", "z.%d.exr"]);
@@ -333,8 +337,8 @@ fn frames_are_rendered_one_after_another() {
     let several = ["--frame", "1-4x1", "--exr", "t.%d.exr", "--report", "t.%d.json", "--checkpoint", "60s"];
     let rendered = frames(&several);
     assert_eq!(rendered.code, Some(0), "{}", rendered.stderr);
-    let told: Vec<&str> = rendered.stderr.lines().filter(|line| line.starts_with("frame ")).collect();
-    assert_eq!(told, ["frame 1, 1 of 4", "frame 2, 2 of 4", "frame 3, 3 of 4", "frame 4, 4 of 4"]);
+    let reported: Vec<&str> = rendered.stderr.lines().filter(|line| line.starts_with("frame ")).collect();
+    assert_eq!(reported, ["frame 1, 1 of 4", "frame 2, 2 of 4", "frame 3, 3 of 4", "frame 4, 4 of 4"]);
     assert!(bytes("t.2.exr") == bytes("two.exr") && bytes("t.1.exr") != bytes("t.4.exr"));
     assert!(bytes("t.3.json").starts_with(b"{"));
     // Finished frames are not rendered again.
@@ -343,7 +347,7 @@ fn frames_are_rendered_one_after_another() {
     let done = frames(&[&several[..], &["--resume"]].concat());
     assert!(done.code == Some(0) && done.stderr.matches("nothing is left to do").count() == 3, "{}", done.stderr);
     assert!(bytes("t.4.exr") == fourth);
-    let piped = fed(&folder, &["-", "--frame", "3-4", "--exr", "p.%d.exr", "--quiet"], &bytes("turn.toml"));
+    let piped = run_with_stdin(&folder, &["-", "--frame", "3-4", "--exr", "p.%d.exr", "--quiet"], &bytes("turn.toml"));
     assert!(piped.status.code() == Some(0) && bytes("p.3.exr") == bytes("t.3.exr"), "{}", text(&piped.stderr));
     // Each frame follows its own plan.
     assert_eq!(frames(&["--frame", "3-4", "--plan", "--plan-file", "p.%d.plan"]).code, Some(0));
@@ -368,18 +372,18 @@ fn frames_are_rendered_one_after_another() {
         ),
     ] {
         let refused = frames(&[&["--frame", "1-2"], arguments].concat());
-        let said = refused.stdout + &refused.stderr;
-        assert!(refused.code == Some(2) && said.contains(message), "{arguments:?}: {said}");
+        let printed = refused.stdout + &refused.stderr;
+        assert!(refused.code == Some(2) && printed.contains(message), "{arguments:?}: {printed}");
     }
 }
 
 #[test]
-fn the_image_says_what_was_set() {
+fn the_image_records_what_was_set() {
     let folder = folder();
     let sets = ["--set", "film.width=5", "--set", "object.ball.material=gold"];
     assert_eq!(render(&folder, &["scene.toml"].into_iter().chain(sets).collect::<Vec<_>>()).code, Some(0));
-    let said = render(&folder, &["info", "scene.exr"]).stdout;
-    assert!(said.contains("--set film.width=5 --set object.ball.material=gold\n"), "{said}");
+    let printed = render(&folder, &["info", "scene.exr"]).stdout;
+    assert!(printed.contains("--set film.width=5 --set object.ball.material=gold\n"), "{printed}");
     assert_eq!(render(&folder, &["scene.toml"]).code, Some(0));
     assert!(!render(&folder, &["info", "scene.exr"]).stdout.contains("render/set"));
 }

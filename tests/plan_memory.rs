@@ -16,10 +16,10 @@ use allocator::{Memory, memory_of};
 use support::scenes::scene;
 
 /// Memory is counted over all threads together.
-static ALONE: Mutex<()> = Mutex::new(());
+static MEMORY_LOCK: Mutex<()> = Mutex::new(());
 
 /// Returns the memory that the plan takes for a glass ball on a floor under a small lamp.
-fn held(width: u32, height: u32, samples: u32) -> Memory {
+fn memory_of_plan(width: u32, height: u32, samples: u32) -> Memory {
     let scene = scene(&format!(
         "[camera]\nposition = [0, 2.2, 5]\nlook_at = [0, 0.5, 0]\nvertical_fov = 40\n\
          [film]\nwidth = {width}\nheight = {height}\n[render]\nsamples = {samples}\n\
@@ -38,14 +38,15 @@ fn held(width: u32, height: u32, samples: u32) -> Memory {
 /// The plan holds photons while it learns where they land, the same number for any image. The memory varies with the
 /// threads.
 #[test]
-fn w8_the_plan_holds_as_much_for_any_number_of_pixels_and_samples() {
-    const MOST: usize = 200_000_000;
-    let _alone = ALONE.lock();
-    let small = held(640, 360, 64);
-    let large = [(3840, 2160, 256), (16384, 16384, 16), (640, 360, 65_536)].map(|(w, h, samples)| held(w, h, samples));
+fn w8_the_plan_takes_no_more_memory_for_more_pixels_and_samples() {
+    const MAX_BYTES: usize = 200_000_000;
+    let _alone = MEMORY_LOCK.lock();
+    let small = memory_of_plan(640, 360, 64);
+    let large = [(3840, 2160, 256), (16384, 16384, 16), (640, 360, 65_536)]
+        .map(|(w, h, samples)| memory_of_plan(w, h, samples));
     let most = large.into_iter().fold(Memory::default(), Memory::max);
     println!("{small:?} for a small image, {most:?} for large ones");
-    assert!(most.peak <= MOST.min(2 * small.peak) && most.largest <= 2 * small.largest, "{small:?} and {most:?}");
+    assert!(most.peak <= MAX_BYTES.min(2 * small.peak) && most.largest <= 2 * small.largest, "{small:?} and {most:?}");
 }
 
 /// Renders an image with all layers in `count` parts.
@@ -84,8 +85,8 @@ fn merged(height: u32, count: u32) -> (Memory, usize, usize) {
 
 /// Rows go from the parts to the file as they arrive. The number of blocks in memory varies with the threads.
 #[test]
-fn w10_a_merge_holds_as_much_for_any_number_of_parts_and_rows() {
-    let _alone = ALONE.lock();
+fn w10_a_merge_takes_no_more_memory_for_more_parts_and_rows() {
+    let _alone = MEMORY_LOCK.lock();
     let (few, image, part) = merged(512, 3);
     let ((many, ..), (tall, ..)) = (merged(512, 60), merged(2048, 3));
     println!("{few:?} for 3 parts, {many:?} for 60, {tall:?} for 4 times as many rows; an image has {image} bytes");
@@ -95,9 +96,9 @@ fn w10_a_merge_holds_as_much_for_any_number_of_parts_and_rows() {
 
 /// Splatted photons are stored as they are sent, not once for each pixel that a filter reaches.
 #[test]
-fn photons_hold_as_much_under_a_wide_filter() {
-    let _alone = ALONE.lock();
-    let held = |radius: u32| {
+fn photons_take_no_more_memory_under_a_wide_filter() {
+    let _alone = MEMORY_LOCK.lock();
+    let memory_of_plan = |radius: u32| {
         let scene = scene(&format!(
             "[camera]\nposition = [0, 1.2, 6]\nlook_at = [0, 1, 0]\nvertical_fov = 35\n\
              [film]\nwidth = 32\nheight = 18\nfilter = {{ tent = {{ radius = {radius} }} }}\n[render]\nsamples = 1\n\
@@ -109,6 +110,6 @@ fn photons_hold_as_much_under_a_wide_filter() {
         let mut rendering = Rendering::new(&scene, &Options::default()).expect("it can be rendered");
         memory_of(|| while rendering.advance(&|_| ()) {}).1
     };
-    let [narrow, wide] = [1, 4].map(held);
+    let [narrow, wide] = [1, 4].map(memory_of_plan);
     assert!(wide.peak <= 2 * narrow.peak, "{narrow:?} and {wide:?}");
 }

@@ -15,7 +15,7 @@ use abbe::film::{Film, Layer};
 use abbe::math::DVec3;
 
 use crate::support::fresnel::reflectances;
-use crate::support::scenes::{assert_near, body, moments, one_pixel, quad, rendered, rendered_with};
+use crate::support::scenes::{assert_near, body, mean_and_variance, one_pixel, quad, render_text, render_text_with};
 
 /// Lanes are f32 and are rounded at each of a few surfaces.
 const ROUNDING: f64 = 2e-6;
@@ -23,20 +23,20 @@ const ROUNDING: f64 = 2e-6;
 /// Renders one pixel of a narrow view of some objects and lights, with more keys of the camera. Returns S0, S1, S2 and
 /// S3.
 fn stokes(camera: &str, rest: &str) -> [f64; 4] {
-    in_green(rendered(&(one_pixel(camera, ", stokes = true") + rest)).film())
+    green_stokes(render_text(&(one_pixel(camera, ", stokes = true") + rest)).film())
 }
 
-fn in_green(film: &Film) -> [f64; 4] {
+fn green_stokes(film: &Film) -> [f64; 4] {
     stokes_vectors(film).map(|component| component[1])
 }
 
 /// Returns S0, S1, S2 and S3 of the first pixel, each in red, green and blue.
 pub fn stokes_vectors(film: &Film) -> [[f64; 3]; 4] {
-    let of = |layer: Layer| {
+    let find_layer = |layer: Layer| {
         let image = film.layers.iter().find(|image| image.layer == layer).expect("the layer is there");
         [0, 1, 2].map(|channel| f64::from(image.values[channel]))
     };
-    [film.pixels[0].rgb.map(f64::from), of(Layer::S1), of(Layer::S2), of(Layer::S3)]
+    [film.pixels[0].rgb.map(f64::from), find_layer(Layer::S1), find_layer(Layer::S2), find_layer(Layer::S3)]
 }
 
 const SKY: &str = "[[light]]\nenvironment.radiance = 1\n";
@@ -76,14 +76,14 @@ fn retarder(degrees: f64, retardance: f64) -> String {
 fn two_polarizers_let_through_what_malus_says() {
     for degrees in [0.0_f64, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0] {
         let cos = degrees.to_radians().cos();
-        let got = stokes("", &sheets(&[polarizer(0.0, 0.0), polarizer(degrees, 0.0)], 0.0));
+        let found = stokes("", &sheets(&[polarizer(0.0, 0.0), polarizer(degrees, 0.0)], 0.0));
         let half = 0.5 * cos * cos;
-        assert_near(got, [half, half, 0.0, 0.0], ROUNDING, &format!("{degrees} degrees"));
-        let got = stokes("", &sheets(&[polarizer(degrees, 0.0), polarizer(0.0, 1e-4)], 0.0));
+        assert_near(found, [half, half, 0.0, 0.0], ROUNDING, &format!("{degrees} degrees"));
+        let found = stokes("", &sheets(&[polarizer(degrees, 0.0), polarizer(0.0, 1e-4)], 0.0));
         let half = 0.5 * (cos * cos + 1e-4 * (1.0 - cos * cos));
         let turned = |x: f64| f64::to_radians(2.0 * degrees) * x;
         let expected = [half, half * turned(1.0).cos(), half * turned(1.0).sin(), 0.0];
-        assert_near(got, expected, ROUNDING, &format!("{degrees} degrees before a leaking one"));
+        assert_near(found, expected, ROUNDING, &format!("{degrees} degrees before a leaking one"));
     }
     let three = stokes("", &sheets(&[0.0, 45.0, 90.0].map(|degrees| polarizer(degrees, 0.0)), 0.0));
     assert_near(three, [0.125, 0.125, 0.0, 0.0], ROUNDING, "three");
@@ -104,8 +104,8 @@ fn a_filter_before_the_camera_is_a_sheet() {
 #[test]
 fn crossed_polarizers_leak_aslant() {
     for (degrees, expected) in [(15.0, 0.000600), (30.0, 0.010204), (45.0, 0.055556), (60.0, 0.180000)] {
-        let got = stokes("", &sheets(&[polarizer(45.0, 0.0), polarizer(-45.0, 0.0)], degrees));
-        assert!((got[0] - expected).abs() < 2e-6, "{degrees} degrees: {got:?} for {expected}");
+        let found = stokes("", &sheets(&[polarizer(45.0, 0.0), polarizer(-45.0, 0.0)], degrees));
+        assert!((found[0] - expected).abs() < 2e-6, "{degrees} degrees: {found:?} for {expected}");
     }
 }
 
@@ -178,8 +178,8 @@ fn metals_mirror_all_four_components() {
         (aluminum, grazing.to_vec(), [0.684973, -0.107958, 0.075201, 0.048315]),
         ("mirror = {}", grazing.to_vec(), [1.0, 0.0, 0.0, 0.0]),
     ] {
-        let got = stokes("", &mirrors(material, &normals));
-        assert_near(got, expected, ROUNDING, &format!("{material}, {} mirrors", normals.len()));
+        let found = stokes("", &mirrors(material, &normals));
+        assert_near(found, expected, ROUNDING, &format!("{material}, {} mirrors", normals.len()));
     }
 }
 
@@ -210,8 +210,8 @@ fn a_filter_takes_the_glare_off_glass() {
         let glass = mirrors(BLACK_GLASS, &[DVec3::new(sin, 0.0, cos)]);
         // The plane of incidence is horizontal.
         for (filter, expected) in [(", polarizer.axis = 0", p), (", polarizer.axis = 90", s), ("", all)] {
-            let got = stokes(filter, &glass)[0];
-            assert!((got - expected).abs() < 1e-6, "{degrees} degrees{filter}: {got} for {expected}");
+            let found = stokes(filter, &glass)[0];
+            assert!((found - expected).abs() < 1e-6, "{degrees} degrees{filter}: {found} for {expected}");
         }
     }
 }
@@ -254,8 +254,8 @@ fn two_reflections_depend_on_how_their_planes_lie() {
             let (sin_turned, cos_turned) = turned.to_radians().sin_cos();
             let second = -direction * cos + (across * cos_turned + DVec3::Y * sin_turned) * sin;
             let scene = mirrors(BLACK_GLASS, &[first, second]);
-            let got = stokes("", &scene)[0];
-            assert!((got - expected).abs() < 3e-8, "{degrees}, {turned} degrees: {got} for {expected}");
+            let found = stokes("", &scene)[0];
+            assert!((found - expected).abs() < 3e-8, "{degrees}, {turned} degrees: {found} for {expected}");
         }
     }
 }
@@ -285,8 +285,8 @@ fn a_pile_of_plates_polarizes() {
     for (index, degrees) in [(1.5, 45.0), (1.5168, 56.603838), (1.5168, 75.0)] {
         for plates in [1, 2] {
             let [t, s1] = through_pile(plates, index, degrees);
-            let got = stokes("", &pile(plates, index, degrees));
-            assert_near(got, [t, s1, 0.0, 0.0], 1e-5, &format!("{plates} of {index} at {degrees} degrees"));
+            let found = stokes("", &pile(plates, index, degrees));
+            assert_near(found, [t, s1, 0.0, 0.0], 1e-5, &format!("{plates} of {index} at {degrees} degrees"));
         }
     }
 }
@@ -300,12 +300,12 @@ fn a_pile_of_many_plates_polarizes_on_average() {
              film = {{ width = 24, height = 24, stokes = true }}\nrender = {{ samples = 16 }}\n{}",
             pile(plates, 1.5168, 56.603838)
         );
-        let image = rendered_with(&text, &Options::default());
+        let image = render_text_with(&text, &Options::default());
         let film = image.film();
         let s1 = film.layers.iter().find(|image| image.layer == Layer::S1).expect("the layer is there");
         let seen = [
-            moments(film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1]))),
-            moments(s1.channel(1).map(f64::from).collect::<Vec<_>>().into_iter()),
+            mean_and_variance(film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1]))),
+            mean_and_variance(s1.channel(1).map(f64::from).collect::<Vec<_>>().into_iter()),
         ];
         for ((mean, variance), expected) in seen.into_iter().zip(through_pile(plates, 1.5168, 56.603838)) {
             let error = (variance / film.pixels.len() as f64).sqrt();
@@ -342,9 +342,9 @@ fn total_reflection_shifts_the_phase() {
         text + "[[object]]\nmaterial = \"glass\"\nshape.sphere = { center = [0, 0, 0], radius = 100 }\n"
     };
     for (reflections, expected) in [(1, [0.706958, 0.707256]), (2, [0.000422, 1.0])] {
-        let got = stokes("", &rhomb(reflections));
-        let [s2, s3] = [got[2], got[3]].map(|part| (part / got[0]).abs());
-        assert!((s2 - expected[0]).abs() < 1e-5 && (s3 - expected[1]).abs() < 1e-5, "{reflections}: {got:?}");
+        let found = stokes("", &rhomb(reflections));
+        let [s2, s3] = [found[2], found[3]].map(|part| (part / found[0]).abs());
+        assert!((s2 - expected[0]).abs() < 1e-5 && (s3 - expected[1]).abs() < 1e-5, "{reflections}: {found:?}");
     }
 }
 
@@ -359,9 +359,9 @@ fn a_coat_polarizes_what_comes_from_below() {
         let (sin, cos) = f64::to_radians(degrees).sin_cos();
         let scene = sheets(&[plastic], degrees).replace(SKY, "")
             + &format!("[[light]]\npoint = {{ position = [{}, 0, {}], intensity = 100 }}\n", 10.0 * sin, 10.0 * cos);
-        let got = stokes("", &scene);
-        assert!((got[1] / got[0] - expected).abs() < 1e-5, "{degrees} degrees: {got:?} for {expected}");
-        assert!(got[2].abs() + got[3].abs() < 1e-6 * got[0], "{degrees} degrees: {got:?}");
+        let found = stokes("", &scene);
+        assert!((found[1] / found[0] - expected).abs() < 1e-5, "{degrees} degrees: {found:?} for {expected}");
+        assert!(found[2].abs() + found[3].abs() < 1e-6 * found[0], "{degrees} degrees: {found:?}");
     }
 }
 
@@ -387,8 +387,8 @@ fn a_polarized_sky_changes_what_water_mirrors() {
                 "environment = {{ radiance = 1, polarization = {{ sun = [{}, {}, {}], degree = 0.7 }} }}",
                 sun.x, sun.y, sun.z
             );
-            let got = stokes("", &scene.replace("environment.radiance = 1", &sky))[0];
-            assert!((got - expected).abs() < 1e-6, "{degrees}, {turned} degrees: {got} for {expected}");
+            let found = stokes("", &scene.replace("environment.radiance = 1", &sky))[0];
+            assert!((found - expected).abs() < 1e-6, "{degrees}, {turned} degrees: {found} for {expected}");
         }
     }
 }
@@ -452,11 +452,11 @@ material = "lamp"
 environment = { radiance = 0.3, polarization = { sun = [0.3, 1, 0.2], degree = 0.7 } }
 "#;
     let [one, three] =
-        [1, 3].map(|threads| rendered_with(text, &Options { threads: Some(threads), ..Options::default() }));
+        [1, 3].map(|threads| render_text_with(text, &Options { threads: Some(threads), ..Options::default() }));
     assert!(one.film() == three.film(), "three threads make another film");
     let film = one.film();
-    let of = |layer: Layer| film.layers.iter().find(|image| image.layer == layer).expect("the layer is there");
-    let parts = Layer::STOKES.map(of);
+    let find_layer = |layer: Layer| film.layers.iter().find(|image| image.layer == layer).expect("the layer is there");
+    let parts = Layer::STOKES.map(find_layer);
     for (number, pixel) in film.pixels.iter().enumerate() {
         for channel in 0..3 {
             let squared: f64 = parts.iter().map(|part| f64::from(part.values[3 * number + channel]).powi(2)).sum();

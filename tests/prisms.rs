@@ -55,7 +55,7 @@ impl Glass {
         };
         if self.formula == "n" {
             let samples: Vec<(f64, f64)> =
-                self.coefficients.split(' ').map(|s| s.split_once(':').expect("nm:n")).map(both).collect();
+                self.coefficients.split(' ').map(|s| s.split_once(':').expect("nm:n")).map(parse_both).collect();
             let i = samples.iter().position(|sample| sample.0 >= nm).expect("a line within the range").max(1);
             let ((x0, y0), (x1, y1)) = (samples[i - 1], samples[i]);
             return ((x1 - nm) * y0 + (nm - x0) * y1) / (x1 - x0);
@@ -75,7 +75,7 @@ fn number(text: &str) -> f64 {
     text.parse().unwrap_or_else(|_| panic!("{text} is no number"))
 }
 
-fn both((a, b): (&str, &str)) -> (f64, f64) {
+fn parse_both((a, b): (&str, &str)) -> (f64, f64) {
     (number(a), number(b))
 }
 
@@ -102,11 +102,11 @@ impl Passage {
     /// Returns the passages of a line at minimum deviation and at a greater incidence.
     fn pair(nm: f64, index: f64) -> [Self; 2] {
         let apex = f64::to_radians(if index < 1.9 { 60.0 } else { 30.0 });
-        let least = (index * (apex / 2.0).sin()).asin();
-        let minimum = Self::new(nm, index, apex, least);
-        let known = 2.0 * least - apex;
-        assert!((minimum.deviation - known).abs() < 1e-12, "{} is not {known}", minimum.deviation);
-        [minimum, Self::new(nm, index, apex, 0.5 * (least + 80_f64.to_radians()))]
+        let incidence_at_minimum = (index * (apex / 2.0).sin()).asin();
+        let minimum = Self::new(nm, index, apex, incidence_at_minimum);
+        let min_deviation = 2.0 * incidence_at_minimum - apex;
+        assert!((minimum.deviation - min_deviation).abs() < 1e-12, "{} is not {min_deviation}", minimum.deviation);
+        [minimum, Self::new(nm, index, apex, 0.5 * (incidence_at_minimum + 80_f64.to_radians()))]
     }
 
     /// Appends the prism and a sun. The prism is placed around the ray that meets the plane z = 0 at x, and bends it
@@ -116,8 +116,8 @@ impl Passage {
         let across = DVec3::new(side.cos(), side.sin(), 0.0);
         let across = (across - forward * across.dot(forward)).normalize();
         let along = forward.cross(across);
-        let turned = |angle: f64| across * angle.cos() - forward * angle.sin();
-        let faces = [turned(self.incidence), turned(self.incidence - self.apex)];
+        let rotated = |angle: f64| across * angle.cos() - forward * angle.sin();
+        let faces = [rotated(self.incidence), rotated(self.incidence - self.apex)];
         // The ray hits the middle of the first face.
         let edge = DVec3::new(x, 0.0, 0.0) - 0.5 * FACE * faces[0];
         let corners = [edge, edge + FACE * faces[0], edge + FACE * faces[1]];
@@ -151,7 +151,7 @@ impl Passage {
     fn expected(&self) -> f64 {
         let half = (0.5 * SUN_DEGREES).to_radians();
         let radiance = 1.0 / (std::f64::consts::PI * half.sin().powi(2));
-        radiance * self.transmittance * visible::color_matching(self.nm)[0] / visible::luminous()
+        radiance * self.transmittance * visible::color_matching(self.nm)[0] / visible::y_integral()
     }
 }
 
@@ -195,22 +195,22 @@ fn judge(glass: &Glass, more: f64) -> (Vec<String>, usize) {
     (wrong.collect(), passages.len())
 }
 
-fn made() -> Vec<Glass> {
+fn maker_glasses() -> Vec<Glass> {
     Glass::all().filter(|glass| data::GLASS_MAKERS.contains(&glass.key.split('/').next().unwrap_or_default())).collect()
 }
 
 #[test]
 fn every_makers_glass_bends_every_line_by_snells_law() {
     let (mut wrong, mut passages) = (Vec::new(), 0);
-    for glass in made() {
+    for glass in maker_glasses() {
         let (mistakes, judged) = judge(&glass, 0.0);
         wrong.extend(mistakes);
         passages += judged;
     }
-    println!("{} glasses, {passages} passages", made().len());
+    println!("{} glasses, {passages} passages", maker_glasses().len());
     let makers = data::glass_names().filter(|key| data::GLASS_MAKERS.iter().any(|maker| key.starts_with(maker)));
-    assert_eq!(made().len(), makers.count());
-    assert!(passages > 9 * made().len(), "only {passages} passages");
+    assert_eq!(maker_glasses().len(), makers.count());
+    assert!(passages > 9 * maker_glasses().len(), "only {passages} passages");
     assert!(wrong.is_empty(), "{} are wrong:\n{}", wrong.len(), wrong[..wrong.len().min(20)].join("\n"));
 }
 
@@ -218,7 +218,7 @@ fn every_makers_glass_bends_every_line_by_snells_law() {
 #[test]
 fn an_index_that_is_off_by_four_in_the_fourth_decimal_is_noticed_at_every_line() {
     for key in ["schott/N-BK7", "schott/N-SF66"] {
-        let glass = made().into_iter().find(|glass| glass.key == key).expect("a glass of the catalog");
+        let glass = maker_glasses().into_iter().find(|glass| glass.key == key).expect("a glass of the catalog");
         for more in [-4e-4, 4e-4] {
             let (mistakes, judged) = judge(&glass, more);
             assert!(mistakes.len() >= judged, "only {} of {judged} are noticed", mistakes.len());
@@ -227,7 +227,7 @@ fn an_index_that_is_off_by_four_in_the_fourth_decimal_is_noticed_at_every_line()
 }
 
 /// Returns the index at a wavelength in nm of a dielectric whose index is written in a scene.
-fn written(index: &str) -> impl Fn(f64) -> f64 + use<> {
+fn written_index(index: &str) -> impl Fn(f64) -> f64 + use<> {
     let scene = scene(&format!(
         "{}[material.glass]\ndielectric = {{ index = {index} }}\n[[object]]\nmaterial = \"glass\"\n\
          shape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n",
@@ -241,7 +241,7 @@ fn written(index: &str) -> impl Fn(f64) -> f64 + use<> {
 /// them. n_d and V_d are compared with their definitions.
 #[test]
 fn an_index_that_a_scene_writes_as_a_formula_is_that_of_the_glass() {
-    let bk7 = written(
+    let bk7 = written_index(
         "{ sellmeier = { b = [1.03961212, 0.231792344, 1.01046945], c = [0.00600069867, 0.0200179144, 103.560653] } }",
     );
     // Lines h, g, F', e, d, C' and r.
@@ -258,7 +258,7 @@ fn an_index_that_a_scene_writes_as_a_formula_is_that_of_the_glass() {
         assert!((bk7(nm) - index).abs() <= 0.6e-5, "{nm} nm: {}, not {index}", bk7(nm));
     }
     for [nd, vd] in [[1.5168, 64.17], [1.78472, 25.68], [2.0, 19.0]] {
-        let index = written(&format!("{{ abbe = {{ nd = {nd:?}, vd = {vd:?} }} }}"));
+        let index = written_index(&format!("{{ abbe = {{ nd = {nd:?}, vd = {vd:?} }} }}"));
         let [f, d, c] = [486.13, 587.56, 656.27].map(&index);
         assert!((d - nd).abs() < 1e-12, "n_d = {d}, not {nd}");
         assert!(((d - 1.0) / (f - c) - vd).abs() < 1e-9 * vd, "V_d = {}, not {vd}", (d - 1.0) / (f - c));

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use abbe::spectrum::visible::{color_matching, luminous};
+use abbe::spectrum::visible::{color_matching, y_integral};
 use abbe::{Options, Scene};
 
 /// Luminous efficacy at the peak, in lm/W (CIE 018:2019).
@@ -30,13 +30,13 @@ fn luminance(text: &str) -> f64 {
     let white = scene.format.white_luminance.unwrap_or(1.0);
     let image = abbe::render(&scene, &Options::default()).expect("it renders");
     let weights = image.film().color_space.to_xyz()[1];
-    let of = |rgb: [f32; 3]| (0..3).map(|channel| weights[channel] * f64::from(rgb[channel])).sum::<f64>();
+    let luminance_of = |rgb: [f32; 3]| (0..3).map(|channel| weights[channel] * f64::from(rgb[channel])).sum::<f64>();
     let pixels = image.rgb();
-    white * pixels.iter().map(|&rgb| of(rgb)).sum::<f64>() / pixels.len() as f64
+    white * pixels.iter().map(|&rgb| luminance_of(rgb)).sum::<f64>() / pixels.len() as f64
 }
 
 #[track_caller]
-fn is_near(found: f64, expected: f64, why: &str) {
+fn assert_close(found: f64, expected: f64, why: &str) {
     assert!((found / expected - 1.0).abs() < 0.005, "{found} cd/m2 for {expected}: {why}");
 }
 
@@ -48,8 +48,8 @@ fn a_lamp_is_as_bright_as_its_units_say_in_every_model_and_space() {
         ("{ rgb = [2, 2, 2], scale = 3 }", 6.0),
         ("{ blackbody = 2856, luminance = 50 }", 50.0),
         ("{ illuminant = \"FL11\", luminance = 700 }", 700.0),
-        ("{ samples = [[300, 0.01], [900, 0.01]] }", 0.01 * EFFICACY * luminous()),
-        ("{ samples = [[300, 1], [900, 1]], scale = 0.02 }", 0.02 * EFFICACY * luminous()),
+        ("{ samples = [[300, 0.01], [900, 0.01]] }", 0.01 * EFFICACY * y_integral()),
+        ("{ samples = [[300, 1], [900, 1]], scale = 0.02 }", 0.02 * EFFICACY * y_integral()),
         ("{ samples = [[300, 1], [900, 1]], luminance = 30 }", 30.0),
         ("{ lines = [[589, 2]] }", 2.0 * EFFICACY * yellow),
     ];
@@ -57,11 +57,11 @@ fn a_lamp_is_as_bright_as_its_units_say_in_every_model_and_space() {
         let light = format!("light = [{{ environment = {{ radiance = {lamp} }} }}]");
         for model in ["\"auto\"", "{ bands = 8 }", "\"hero\""] {
             let film = ", radiometry = \"absolute\", white_luminance = 100";
-            is_near(luminance(&scene(film, model, &light)), expected, &format!("{lamp}, {model}"));
+            assert_close(luminance(&scene(film, model, &light)), expected, &format!("{lamp}, {model}"));
         }
         for space in ["lin_ap0_scene", "lin_ciexyzd65_scene"] {
             let film = format!(", radiometry = \"absolute\", color_space = \"{space}\"");
-            is_near(luminance(&scene(&film, "\"auto\"", &light)), expected, &format!("{lamp}, {space}"));
+            assert_close(luminance(&scene(&film, "\"auto\"", &light)), expected, &format!("{lamp}, {space}"));
         }
     }
 }
@@ -85,11 +85,11 @@ fn floors_are_lit_as_photometry_says() {
                 "{FLOOR}light = [{{ spot = {{ position = [0, 20, 0], toward = [0, -1, 0], cone_angle = 60, intensity = \
                  {{ samples = [[300, 0.1], [900, 0.1]] }} }} }}]"
             ),
-            0.1 * EFFICACY * luminous() / 4.0,
+            0.1 * EFFICACY * y_integral() / 4.0,
         ),
         (square, 3000.0 * 0.01 / 4.0),
     ] {
-        is_near(luminance(&scene(film, "\"auto\"", &rest)), 0.5 * lux / PI, &rest);
+        assert_close(luminance(&scene(film, "\"auto\"", &rest)), 0.5 * lux / PI, &rest);
     }
 }
 
@@ -103,15 +103,15 @@ fn white_luminance_divides_every_kind_of_light_alike() {
             let text = scene(&format!(", radiometry = \"absolute\"{white}"), "\"auto\"", rest);
             luminance(&text)
         });
-        is_near(hundred, one, rest);
-        is_near(luminance(&scene("", "\"auto\"", rest)), one, rest);
+        assert_close(hundred, one, rest);
+        assert_close(luminance(&scene("", "\"auto\"", rest)), one, rest);
     }
 }
 
 #[test]
-fn relative_light_is_as_it_was_and_says_no_luminance() {
+fn relative_light_is_unchanged_and_reports_no_luminance() {
     let light = "light = [{ environment = { radiance = { samples = [[300, 2], [900, 2]] } } }]";
-    is_near(luminance(&scene(", radiometry = \"relative\"", "\"auto\"", light)), 2.0, "a flat spectrum of 2");
+    assert_close(luminance(&scene(", radiometry = \"relative\"", "\"auto\"", light)), 2.0, "a flat spectrum of 2");
     let scene = Scene::parse(&scene("", "\"auto\"", light), "").expect("the scene is valid");
     assert_eq!(scene.format.white_luminance, None);
 }

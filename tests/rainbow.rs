@@ -72,7 +72,7 @@ impl Bow {
         let basis = Basis::wavelengths(ColorSpace::Xyz, vec![550.0], &[nm]);
         let film = film_of(&scene, Method { basis, ..method(&scene, FAINT) });
         let half = (0.5 * SUN_DEGREES).to_radians();
-        let disc = visible::color_matching(nm)[0] / visible::luminous() / (std::f64::consts::PI * half.sin().powi(2));
+        let disc = visible::color_matching(nm)[0] / visible::y_integral() / (std::f64::consts::PI * half.sin().powi(2));
         // Light of higher orders that passes here is fainter by a factor of a hundred or more.
         film.pixels.iter().any(|pixel| f64::from(pixel.rgb[0]) > 0.2 * disc * self.share(index))
     }

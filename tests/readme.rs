@@ -67,29 +67,33 @@ fn rows(page: &str) -> Vec<(&str, Vec<&str>)> {
 }
 
 /// Returns a scene around a part of it.
-fn around(view: &str, film: &str, render: &str, rest: &str) -> String {
+fn scene_around(view: &str, film: &str, render: &str, rest: &str) -> String {
     format!("camera = {{ {view} }}\nfilm = {{ {film} }}\nrender = {{ {render} }}\n{MATERIALS}{rest}")
 }
 
 /// Returns a scene in which only `rest` matters.
-fn with(rest: &str) -> String {
-    around(&format!("{VIEW}, vertical_fov = 30"), FILM, "meters_per_unit = 1", rest)
+fn scene_with(rest: &str) -> String {
+    scene_around(&format!("{VIEW}, vertical_fov = 30"), FILM, "meters_per_unit = 1", rest)
 }
 
 /// Returns a scene that contains a piece of a row, or none if the piece cannot be put into a scene by itself.
 fn scene(head: &str, piece: &str) -> Option<String> {
-    let on = |material: &str| with(&format!("[material.it]\n{material}\n{BALL}material = \"it\"\n"));
+    let on = |material: &str| scene_with(&format!("[material.it]\n{material}\n{BALL}material = \"it\"\n"));
     let (key, _) = piece.split_once(" = ").unwrap_or_default();
     let is_value = piece.starts_with(['{', '"']);
     // Neither a value in place of another nor a part of something.
     let is_alone = !key.is_empty() && !is_value;
     Some(match head {
-        "in an `[[object]]`" if key.starts_with("shape.") => with(&format!("[[object]]\nmaterial = \"a\"\n{piece}\n")),
-        "in an `[[object]]`" if is_alone && key != "material" => with(&format!("{BALL}material = \"a\"\n{piece}\n")),
+        "in an `[[object]]`" if key.starts_with("shape.") => {
+            scene_with(&format!("[[object]]\nmaterial = \"a\"\n{piece}\n"))
+        }
+        "in an `[[object]]`" if is_alone && key != "material" => {
+            scene_with(&format!("{BALL}material = \"a\"\n{piece}\n"))
+        }
         "in a `[material.NAME]`" if piece.contains(" = {") => on(piece),
-        "in a `[[light]]`" if is_alone && piece.contains(" = {") => with(&format!("[[light]]\n{piece}\n")),
+        "in a `[[light]]`" if is_alone && piece.contains(" = {") => scene_with(&format!("[[light]]\n{piece}\n")),
         "in a `[[light]]`" if ["name", "group", "visible_to_camera"].contains(&key) => {
-            with(&format!("[[light]]\nenvironment = {{ radiance = 1 }}\n{piece}\n"))
+            scene_with(&format!("[[light]]\nenvironment = {{ radiance = 1 }}\n{piece}\n"))
         }
         "a spectrum: any reflectance, transmittance, radiance .." => {
             on(&format!("diffuse = {{ reflectance = {piece} }}"))
@@ -105,18 +109,18 @@ fn scene(head: &str, piece: &str) -> Option<String> {
                 "projection = \"equirectangular\"" => VIEW.into(),
                 _ => format!("{VIEW}, vertical_fov = 30"),
             };
-            around(&without(&others, key, piece), FILM, "", "")
+            scene_around(&replaced_key(&others, key, piece), FILM, "", "")
         }
         "in `[film]`" if is_alone && key != "white_luminance" => {
-            around(&format!("{VIEW}, vertical_fov = 30"), &without(FILM, key, piece), "", "")
+            scene_around(&format!("{VIEW}, vertical_fov = 30"), &replaced_key(FILM, key, piece), "", "")
         }
-        "in `[render]`" if is_alone => around(&format!("{VIEW}, vertical_fov = 30"), FILM, piece, ""),
+        "in `[render]`" if is_alone => scene_around(&format!("{VIEW}, vertical_fov = 30"), FILM, piece, ""),
         _ => return None,
     })
 }
 
 /// Returns keys and values, with a piece in place of the one with its key.
-fn without(others: &str, key: &str, piece: &str) -> String {
+fn replaced_key(others: &str, key: &str, piece: &str) -> String {
     let mut table: toml::Table = toml::from_str(&format!("it = {{ {others} }}")).expect("TOML");
     let it = table.get_mut("it").and_then(toml::Value::as_table_mut).expect("a table");
     it.remove(key);

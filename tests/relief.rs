@@ -11,7 +11,7 @@ use std::path::Path;
 use crate::support::larger::larger;
 use crate::support::pictures::{L8, RGB8, RGB16, write_png};
 use crate::support::random::Random;
-use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, image_in, scene_in, view};
+use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, render_film_in, scene_in, view};
 use abbe::math::{DVec3, Ray};
 use abbe::scene::Source;
 
@@ -62,7 +62,7 @@ fn a_flat_map_changes_no_bit() {
         ["diffuse.reflectance = 0.7", "conductor = { metal = \"Au\", roughness = 0.3 }", "mirror.reflectance = 0.5"]
     {
         let bits = |map: &str| -> Vec<_> {
-            let (film, _) = image_in(folder, &room(material, map), SPLITTING);
+            let (film, _) = render_film_in(folder, &room(material, map), SPLITTING);
             film.pixels.iter().map(|pixel| pixel.rgb.map(f32::to_bits)).collect()
         };
         let bare = bits("");
@@ -119,7 +119,7 @@ fn white_surfaces_with_dents_are_as_bright_as_the_sky_around_them() {
                         view(from, [0.0; 3], 20.0, 40),
                         environment(1.0)
                     );
-                    let (film, report) = image_in(folder.path(), &text, transport);
+                    let (film, report) = render_film_in(folder.path(), &text, transport);
                     assert_eq!((report.non_finite, report.unmatched), (0, 0));
                     let mean = Mean::of(&film);
                     println!("{material}, {map}: {:?} +- {:?}", mean.value[1], mean.error[1]);
@@ -144,7 +144,7 @@ fn sunlit_from(folder: &Path, object: &str, toward: DVec3, from: [f64; 3]) -> (f
          [[light]]\nsun = {{ toward = {:?}, angular_diameter = 0, irradiance = {PI:?} }}\n",
         toward.to_array()
     );
-    let (film, _) = image_in(folder, &text, EVERY_BRANCH);
+    let (film, _) = render_film_in(folder, &text, EVERY_BRANCH);
     let first = film.pixels[0].rgb[1];
     assert!(film.pixels.iter().all(|pixel| (pixel.rgb[1] - first).abs() < 1e-5));
     (f64::from(first), film.layers[0].values[..3].try_into().expect("a normal"))
@@ -174,7 +174,7 @@ fn a_matte_surface_of_bent_normals_looks_the_same_from_everywhere() {
 
 /// Lambert's law holds for the normal of the map, on every kind of surface that faces up, with u to +x and v to -z.
 #[test]
-fn an_even_map_shades_like_a_surface_that_is_tilted_so() {
+fn an_even_map_shades_like_a_surface_with_the_same_tilt() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let tilted = DVec3::new(0.3, 0.2, 1.0).normalize();
@@ -364,8 +364,8 @@ fn images_that_are_no_relief_are_refused_in_words() {
         (bare, "normal_map = { image = \"flat.png\" }", "this mesh has no texture coordinates"),
         (bare, "bump_map = { image = \"gray.png\", depth = 1 }", "this mesh has no texture coordinates"),
     ] {
-        let said = refused(shape, map).unwrap_or_default();
-        assert!(said.contains(words), "{map}: {said}");
+        let refusal = refused(shape, map).unwrap_or_default();
+        assert!(refusal.contains(words), "{map}: {refusal}");
     }
     // Heights may be below 0, and a gray image holds them as well as a color image.
     for map in ["bump_map = { image = \"signed.exr\", depth = 1 }", "bump_map = { image = \"gray.png\", depth = -1 }"] {

@@ -12,7 +12,7 @@ mod weights;
 use abbe::material::{FacetSides, RoughInterface};
 
 /// Calls `check` with each index from outside and from inside, at each roughness and cosine.
-fn each(
+fn for_each_boundary(
     roughnesses: &[f64],
     indices: &[f64],
     cosines: &[f64],

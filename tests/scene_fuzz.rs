@@ -19,7 +19,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use crate::support::texts::scenes;
-use edits::{change, edit, edited};
+use edits::{apply_edit, change, edit};
 
 fn cases(cases: u32) -> ProptestConfig {
     let given = ProptestConfig::default();
@@ -151,7 +151,7 @@ proptest! {
         edits in prop::collection::vec(edit(), 1..8),
     ) {
         let (path, text) = scene.get(&SCENES);
-        read(path, edits.iter().fold(text.clone(), |text, edit| edited(&text, edit)));
+        read(path, edits.iter().fold(text.clone(), |text, edit| apply_edit(&text, edit)));
     }
 }
 
@@ -164,7 +164,7 @@ proptest! {
         changes in prop::collection::vec(change(), 1..3),
     ) {
         let (path, text) = scene.get(&SCENES);
-        if let Some(scene) = read(path, changes.iter().fold(text.clone(), |text, change| edited(&text, change))) {
+        if let Some(scene) = read(path, changes.iter().fold(text.clone(), |text, change| apply_edit(&text, change))) {
             let (_, report) = render(&prepare(&scene, plan(&scene).method), &|_| {});
             prop_assert_eq!(report.non_finite, 0);
         }

@@ -75,7 +75,7 @@ fn scenes_without_chance_are_planned_with_one_exact_sample() {
 }
 
 #[test]
-fn the_classic_scene_is_said_to_part_its_lanes_in_every_dispersive_glass() {
+fn the_plan_of_the_classic_scene_parts_lanes_in_every_dispersive_glass() {
     let (_, because) = planned("classic");
     for glass in ["crown", "flint", "diamond", "pond"] {
         let line = because.lines().find(|line| line.starts_with(&format!("material {glass}:")));
@@ -99,7 +99,7 @@ fn the_smallpt_scene_is_planned_as_a_path_tracer_of_three_lanes_that_stay_togeth
 }
 
 #[test]
-fn the_prism_scene_is_said_to_let_wavelengths_part() {
+fn the_plan_of_the_prism_scene_lets_wavelengths_part() {
     let (plan, because) = planned("prism");
     assert!(matches!(plan.method.transport, Transport::Random { .. }), "{because}");
     assert!(plan.method.basis.draws_wavelengths(), "{because}");

@@ -95,7 +95,7 @@ fn an_image_lights_a_floor_as_its_pixels_say() {
         let expected = expected(turn).map(|x| 0.5 * 2.0 * x);
         for model in ["\"rgb\"", "{ bands = 16 }"] {
             let mean = mean(model, turn);
-            let error = mean.worst_error(expected);
+            let error = mean.worst_relative_error(expected);
             assert!(error < 0.01, "{model}: noise {error}");
             // Sixteen wavelengths have an error of at most half a percent for an rgb color.
             let bias = if model.contains("bands") { 5e-3 } else { 0.0 };
@@ -142,7 +142,7 @@ fn an_even_image_is_the_sky_of_its_color() {
         write_rgb_file(folder.path().join("even.exr"), 8, 4, |_, _| (r, g, b)).unwrap();
         // The measured error of wavelengths is 4e-4 of the brightest number.
         for (model, tolerance) in [("{ bands = 16 }", 1e-3), ("{ bands = 32 }", 1e-3), ("\"rgb\"", 1e-6)] {
-            let see = |radiance: &str| {
+            let seen_color = |radiance: &str| {
                 let text = format!(
                     "{}[render]\nmodel = {model}\nsamples = 4\n[material.paint]\n\
                      mirror = {{ reflectance = 0.5 }}\n[[object]]\n\
@@ -156,7 +156,8 @@ fn an_even_image_is_the_sky_of_its_color() {
                 // color differ.
                 [film.pixels[0].rgb, film.pixels[36].rgb].map(|rgb| rgb.map(f64::from))
             };
-            let [found, expected] = [see("{ image = \"even.exr\" }"), see(&format!("{{ rgb = {rgb:?} }}"))];
+            let [found, expected] =
+                [seen_color("{ image = \"even.exr\" }"), seen_color(&format!("{{ rgb = {rgb:?} }}"))];
             for (found, expected) in [(found[0], expected[0]), (found[1], expected[1])] {
                 let brightest = expected.into_iter().fold(0.0, larger);
                 for c in 0..3 {

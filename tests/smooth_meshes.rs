@@ -13,7 +13,7 @@ use crate::meshes::files::file;
 use crate::support::bodies::ball_faces;
 use crate::support::random::Random;
 use crate::support::run::Folder;
-use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, image, scene, view};
+use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, render_film, scene, view};
 
 /// Returns a ball of radius 1, divided by `around` meridians and `rings` - 1 circles of latitude.
 fn ball(around: u32, rings: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
@@ -57,7 +57,7 @@ fn x8_a_smooth_white_ball_is_as_bright_as_the_sky_around_it() {
         ("conductor = { n = 0.0001, k = 100, roughness = 0.5 }", 1e-2),
     ] {
         for transport in [SPLITTING, SINGLE_PATH] {
-            let (film, report) = image(&furnace(material, 64), transport);
+            let (film, report) = render_film(&furnace(material, 64), transport);
             assert_eq!((report.non_finite, report.unmatched), (0, 0));
             let mean = Mean::of(&film);
             println!("X8: {material}: {:?} +- {:?}", mean.value, mean.error);
@@ -71,21 +71,21 @@ fn x8_a_smooth_white_ball_is_as_bright_as_the_sky_around_it() {
 #[test]
 fn x8_no_mirror_image_of_a_smooth_ball_shows_its_inside() {
     // A ray that is sent below a triangle would hit the ball again, from inside, and lose half of its light each time.
-    let (film, _) = image(&furnace("mirror.reflectance = 0.5", 16), EVERY_BRANCH);
+    let (film, _) = render_film(&furnace("mirror.reflectance = 0.5", 16), EVERY_BRANCH);
     let darkest = film.pixels.iter().map(|pixel| pixel.rgb[1]).fold(1.0, f32::min);
     assert!((darkest - 0.5).abs() < 1e-6, "{darkest}");
 }
 
 #[test]
 fn x8_smooth_glass_loses_no_light() {
-    let (film, report) = image(&furnace("dielectric.index = 1.5", 64), SPLITTING);
+    let (film, report) = render_film(&furnace("dielectric.index = 1.5", 64), SPLITTING);
     assert_eq!((report.non_finite, report.unmatched), (0, 0));
     let mean = Mean::of(&film);
     println!("X8: glass {:?} +- {:?}", mean.value, mean.error);
     println!("X8: glass leaves {:?}", report);
     // Some of the light that bent normals let in hits the inside at angles of total reflection repeatedly. What is left
     // of it when roulette ends its path returns so rarely and so bright that a mean is a little low.
-    assert!(mean.worst_error([1.0; 3]) <= 1e-3, "{mean:?}");
+    assert!(mean.worst_relative_error([1.0; 3]) <= 1e-3, "{mean:?}");
     assert!((mean.value[1] - 1.0).abs() <= 1e-2, "{mean:?}");
 }
 
@@ -98,9 +98,9 @@ fn x8_smooth_surfaces_take_the_same_light_from_lamps_aimed_at_and_met_by_chance(
     for material in ["diffuse.reflectance = 0.8", "conductor = { n = 0.2, k = 3.9, roughness = 0.6 }"] {
         // A uniform sky that is partly hidden by a lamp of its own radiance is as bright as without the lamp.
         let text = furnace(material, 64) + &lamp.replace("RADIANCE", "1");
-        let with = Mean::of(&image(&text, SPLITTING).0);
-        let without = Mean::of(&image(&furnace(material, 64), SPLITTING).0);
-        let error = with.beside(&without).error[1];
+        let with = Mean::of(&render_film(&text, SPLITTING).0);
+        let without = Mean::of(&render_film(&furnace(material, 64), SPLITTING).0);
+        let error = with.with_joint_error(&without).error[1];
         let off = with.value[1] - without.value[1];
         assert!(off.abs() <= 3.5 * error + 1e-6, "{material}: {off} +- {error}");
     }
@@ -263,16 +263,16 @@ fn normals_and_texture_coordinates_that_are_not_finite_are_refused() {
         })
     };
     let up = [0.0, 0.0, 1.0];
-    let said = "the normal of vertex 1 (counted from 0) is not finite";
-    let of_line = "the normal in line 6 is not finite";
-    assert_eq!(refusals([0.0, f32::NAN, 0.0], [0.0; 2], true), [said, of_line, said]);
-    assert_eq!(refusals([f32::INFINITY, 0.0, 0.0], [0.0; 2], true), [said, of_line, said]);
+    let vertex_message = "the normal of vertex 1 (counted from 0) is not finite";
+    let line_message = "the normal in line 6 is not finite";
+    assert_eq!(refusals([0.0, f32::NAN, 0.0], [0.0; 2], true), [vertex_message, line_message, vertex_message]);
+    assert_eq!(refusals([f32::INFINITY, 0.0, 0.0], [0.0; 2], true), [vertex_message, line_message, vertex_message]);
     assert_eq!(refusals([0.0, f32::NAN, 0.0], [0.0; 2], false), ["", "", ""], "flat meshes have no normals");
     for smooth in [false, true] {
-        let said = "the texture coordinates of vertex 1 (counted from 0) are not finite";
-        let of_line = "the texture coordinate in line 7 is not finite";
-        assert_eq!(refusals(up, [f32::NAN, 0.5], smooth), [said, of_line, said]);
-        assert_eq!(refusals(up, [0.5, f32::NEG_INFINITY], smooth), [said, of_line, said]);
+        let vertex_message = "the texture coordinates of vertex 1 (counted from 0) are not finite";
+        let line_message = "the texture coordinate in line 7 is not finite";
+        assert_eq!(refusals(up, [f32::NAN, 0.5], smooth), [vertex_message, line_message, vertex_message]);
+        assert_eq!(refusals(up, [0.5, f32::NEG_INFINITY], smooth), [vertex_message, line_message, vertex_message]);
         assert_eq!(refusals(up, [0.5, 0.5], smooth), ["", "", ""]);
     }
 }

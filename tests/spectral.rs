@@ -9,22 +9,22 @@ use abbe::spectrum::{apply, data};
 use abbe::trace::Method;
 
 use crate::support::larger::larger;
-use crate::support::scenes::{film_of, moments, rendered, rendered_with, scene};
+use crate::support::scenes::{film_of, mean_and_variance, render_text, render_text_with, scene};
 
 /// Returns the largest difference between the image and the color of each pixel's bands of 1 nm, from 360 to 830. It is
 /// relative to the brightest channel of the pixel, or to one percent of the image's mean if that is more.
 fn worst_color(film: &Film) -> f64 {
-    let film_of_xyz = film.color_space.of_xyz();
+    let film_of_xyz = film.color_space.matrix_from_xyz();
     let spectral = film.spectral.as_ref().expect("spectra were asked for");
     assert_eq!(spectral.bands.count(), data::color_matching().len());
-    let luminous: f64 = data::color_matching().iter().map(|cmf| cmf[1]).sum();
+    let y_integral: f64 = data::color_matching().iter().map(|cmf| cmf[1]).sum();
     let strongest = |rgb: [f32; 3]| rgb.iter().fold(0.0, |most: f64, &x| larger(most, f64::from(x).abs()));
     let mean = film.pixels.iter().map(|pixel| strongest(pixel.rgb)).sum::<f64>() / film.pixels.len() as f64;
     assert!(mean > 0.0);
     let worst = |number: usize| {
         let (mut xyz, expected) = ([0.0; 3], film.pixels[number].rgb);
         for (&radiance, cmf) in spectral.pixel(number).iter().zip(data::color_matching()) {
-            (0..3).for_each(|i| xyz[i] += f64::from(radiance) * cmf[i] / luminous);
+            (0..3).for_each(|i| xyz[i] += f64::from(radiance) * cmf[i] / y_integral);
         }
         let color = apply(&film_of_xyz, xyz);
         assert!(color.iter().all(|x| x.is_finite()), "{color:?}");
@@ -84,7 +84,7 @@ fn an_even_spectrum_of_one_is_one_in_every_band() {
     let bands = [[400.0, 700.0, 10.0], [550.0, 552.0, 0.25], [360.0, 830.0, 5.0], [360.0, 830.0, 470.0]];
     let bands = bands.map(|[from, to, step]| format!("{{ from = {from}, to = {to}, step = {step} }}"));
     for bands in bands.iter().map(String::as_str).chain(["true"]) {
-        let image = rendered(&format!(
+        let image = render_text(&format!(
             "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 40 }}\n\
              film = {{ width = 4, height = 2, spectral = {bands} }}\n\
              light = [{{ environment.radiance.samples = [[300, 1], [900, 1]] }}]"
@@ -98,7 +98,7 @@ fn an_even_spectrum_of_one_is_one_in_every_band() {
 #[test]
 fn spectra_of_absolute_light_are_in_watts() {
     let sky = |radiance: &str| {
-        rendered(&format!(
+        render_text(&format!(
             "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 40 }}\n\
              film = {{ width = 2, height = 2, {FINE}, radiometry = \"absolute\", white_luminance = 80 }}\n\
              light = [{{ environment.radiance = {radiance} }}]"
@@ -123,7 +123,7 @@ const WHITE: f64 = 5e-4;
 fn spectra_make_the_colors_of_the_image() {
     // The difference of two sums of light has a larger relative error.
     for (filter, tolerance) in [("box", WHITE), ("mitchell", 2.0 * WHITE)] {
-        let image = rendered(&room(&format!("{FINE}, filter = \"{filter}\""), "1.5"));
+        let image = render_text(&room(&format!("{FINE}, filter = \"{filter}\""), "1.5"));
         assert!(image.because().iter().any(|line| line.starts_with("photon tracing")), "{:?}", image.because());
         assert!(image.because().iter().any(|line| line.starts_with("photon map")), "{:?}", image.because());
         let worst = worst_color(image.film());
@@ -135,7 +135,7 @@ fn spectra_make_the_colors_of_the_image() {
 /// by a few percent within half a nm, at most by 0.06 of themselves.
 #[test]
 fn spectra_of_lanes_that_part_make_the_colors_of_the_image() {
-    let image = rendered(&room(FINE, "\"N-SF11\""));
+    let image = render_text(&room(FINE, "\"N-SF11\""));
     assert!(image.because().iter().any(|line| line.starts_with("model hero")), "{:?}", image.because());
     let worst = worst_color(image.film());
     assert!(worst <= 0.06, "{worst}");
@@ -148,7 +148,7 @@ fn spectra_of_dyes_make_the_colors_of_the_image() {
         let floor = "floor.diffuse = { reflectance = 0.1, fluorescence = { absorption = { samples = [[420, 0.9], [520, 0]] }, \
                      emission = { samples = [[500, 0], [540, 1], [620, 0]] }, quantum_yield = 0.9 } }";
         let text = room(FINE, glass).replace("floor.diffuse.reflectance = { rgb = [0.7, 0.5, 0.3] }", floor);
-        let image = rendered(&text);
+        let image = render_text(&text);
         assert!(image.because().iter().any(|line| line.starts_with(model)), "{:?}", image.because());
         assert!(image.because().iter().any(|line| line.contains("floor: fluoresces")), "{:?}", image.because());
         let worst = worst_color(image.film());
@@ -187,7 +187,7 @@ fn light_vertices_leave_spectra_too() {
 /// Two ideal lines stay in their bands, with their power divided by the width of the band.
 #[test]
 fn ideal_lines_stay_in_their_bands() {
-    let image = rendered(
+    let image = render_text(
         "camera = { position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 40 }\n\
          film = { width = 2, height = 2, spectral = true }\n\
          light = [{ environment.radiance = { lines = [[546.1, 3], [611, 1]] } }]",
@@ -206,7 +206,7 @@ fn ideal_lines_stay_in_their_bands() {
 
 /// Surfaces are known equally well where the eye sees hardly anything and where it sees well.
 #[test]
-fn spectra_know_surfaces_over_all_bands() {
+fn spectra_resolve_surfaces_over_all_bands() {
     let all = "{ from = 360, to = 830, step = 5 }";
     let common = "{ from = 400, to = 700, step = 10 }";
     let (even, edge) = ([[360.0, 0.0], [830.0, 1.0]], [[740.0, 0.2], [760.0, 0.8]]);
@@ -223,7 +223,7 @@ fn spectra_know_surfaces_over_all_bands() {
     ];
     for (bands, reflectance, most) in cases {
         let [[first, low], [last, high]] = reflectance;
-        let image = rendered(&format!(
+        let image = render_text(&format!(
             "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 10 }}\n\
              film = {{ width = 1, height = 1, spectral = {bands} }}\n\
              light = [{{ environment.radiance.samples = [[300, 1], [900, 1]] }}]\n\
@@ -247,7 +247,7 @@ fn spectra_know_surfaces_over_all_bands() {
 /// it.
 #[test]
 fn a_dispersive_ball_in_an_even_world_cannot_be_seen_in_any_band() {
-    let image = rendered(
+    let image = render_text(
         "camera = { position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 10 }\n\
          film = { width = 16, height = 16, spectral = { from = 360, to = 830, step = 10 } }\n\
          render = { samples = 64, model = \"hero\" }\n\
@@ -258,7 +258,7 @@ fn a_dispersive_ball_in_an_even_world_cannot_be_seen_in_any_band() {
     let spectral = image.film().spectral.as_ref().expect("spectra were asked for");
     let pixels = spectral.values.len() / spectral.bands.count();
     for (band, nm) in spectral.bands.centers_nm().enumerate() {
-        let (mean, variance) = moments((0..pixels).map(|pixel| f64::from(spectral.pixel(pixel)[band])));
+        let (mean, variance) = mean_and_variance((0..pixels).map(|pixel| f64::from(spectral.pixel(pixel)[band])));
         let z = (mean - 1.0) / (variance / pixels as f64).sqrt();
         assert!(z.abs() <= 4.0, "{mean} at {nm} nm, z = {z}");
         // If visibility alone decided where wavelengths are drawn, hardly a sample would find light where the eye sees
@@ -270,7 +270,7 @@ fn a_dispersive_ball_in_an_even_world_cannot_be_seen_in_any_band() {
 #[test]
 fn spectra_change_no_bit_of_the_image_by_the_same_lanes() {
     let lanes = |film: &str| room(film, "1.5").replace("samples = 16,", "samples = 16, model = { bands = 32 },");
-    let (plain, spectral) = (rendered(&lanes("")), rendered(&lanes("spectral = true")));
+    let (plain, spectral) = (render_text(&lanes("")), render_text(&lanes("spectral = true")));
     for channel in ["R", "G", "B", "A", "Z"] {
         assert!(plain.layer(channel) == spectral.layer(channel), "{channel}");
     }
@@ -280,10 +280,10 @@ fn spectra_change_no_bit_of_the_image_by_the_same_lanes() {
 #[test]
 fn spectra_are_the_same_for_any_part_and_any_number_of_threads() {
     let text = room("spectral = true", "1.5");
-    let whole = rendered(&text);
+    let whole = render_text(&text);
     let [left, top] = [7, 5];
     let crop = abbe::film::Window { left: left as i32, top: top as i32, width: 10, height: 8 };
-    let part = rendered_with(&text, &Options { threads: Some(3), crop: Some(crop), ..Options::default() });
+    let part = render_text_with(&text, &Options { threads: Some(3), crop: Some(crop), ..Options::default() });
     for (x, y) in (0..8).flat_map(|y| (0..10).map(move |x| (x, y))) {
         assert_eq!(part.spectrum_at(x, y), whole.spectrum_at(left + x, top + y), "{x}, {y}");
     }

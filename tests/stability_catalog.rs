@@ -26,13 +26,13 @@ const ROWS: [(&str, u32); 16] = [
     ("F", 3),
 ];
 
-fn home() -> &'static Path {
+fn repository() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
 /// Returns the rows of the table: what is done, and the tests as `file::name`.
 fn table() -> BTreeMap<String, (String, Vec<String>)> {
-    let text = fs::read_to_string(home().join("tests/STABILITY.md")).expect("the table");
+    let text = fs::read_to_string(repository().join("tests/STABILITY.md")).expect("the table");
     let mut rows = BTreeMap::new();
     for line in text.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| row")) {
         let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
@@ -77,7 +77,7 @@ fn every_row_of_the_stability_catalog_names_tests_that_exist_or_says_why_there_i
         assert!(!tests.is_empty() || does.starts_with("does not apply: "), "{id} has no test");
         for test in tests {
             let (file, name) = test.split_once("::").unwrap_or_else(|| panic!("{id}: {test} is no file::name"));
-            let path = home().join("tests").join(file);
+            let path = repository().join("tests").join(file);
             let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{id}: {file}: {error}"));
             assert!(tests_in(&text).contains(&name), "{id}: there is no test {name} in {file}");
         }
@@ -95,17 +95,18 @@ fn no_row_of_the_stability_catalog_is_missing() {
 #[test]
 fn every_test_that_is_named_after_a_row_stands_in_the_stability_catalog() {
     let table = table();
-    let of =
-        |folder: &'static str| texts(&home().join(folder)).into_iter().map(move |(path, text)| (folder, path, text));
+    let of = |folder: &'static str| {
+        texts(&repository().join(folder)).into_iter().map(move |(path, text)| (folder, path, text))
+    };
     let mut count = 0;
     for (folder, path, text) in ["tests", "src"].into_iter().flat_map(of) {
-        let path = home().join(folder).join(path);
+        let path = repository().join(folder).join(path);
         for name in tests_in(&text) {
             for row in rows_of(name) {
                 let listed = table.get(&row).map_or(&[][..], |(_, tests)| tests);
                 let ending = format!("::{name}");
                 let is_listed = listed.iter().any(|test| {
-                    let file = test.strip_suffix(&ending).map(|file| home().join("tests").join(file));
+                    let file = test.strip_suffix(&ending).map(|file| repository().join("tests").join(file));
                     file.is_some_and(|file| file.canonicalize().ok() == path.canonicalize().ok())
                 });
                 // A test may cover two rows at once, so it may be listed in a row that it is not named after.

@@ -8,7 +8,7 @@
 use abbe::film::{DEPTH_OF_NOTHING, Film};
 use abbe::trace::Transport;
 
-use crate::support::scenes::{SINGLE_PATH, SPLITTING, image, scene};
+use crate::support::scenes::{SINGLE_PATH, SPLITTING, render_film, scene};
 
 /// Returns a scene with every shape, material and light. All lengths are multiplied by a factor.
 fn text(size: f64) -> String {
@@ -131,13 +131,13 @@ fn assert_same_but_depth(scaled: &Film, film: &Film, size: f32) {
 #[test]
 fn s6_a_scene_scaled_by_a_power_of_two_gives_the_identical_image() {
     for transport in [SPLITTING, SINGLE_PATH, Transport::Deterministic { cutoff: 1e-4, most: u64::MAX }] {
-        let (film, report) = image(&text(1.0), transport);
+        let (film, report) = render_film(&text(1.0), transport);
         assert_eq!((report.non_finite, report.unmatched), (0, 0));
         let seen = |test: &dyn Fn(f32) -> bool| film.pixels.iter().filter(|pixel| test(pixel.rgb[0])).count();
         assert!(seen(&|x| x > 0.05) > 1000, "the scene is nearly black");
         for power in [20, -20] {
             let size = libm::exp2(f64::from(power));
-            let (scaled, counted) = image(&text(size), transport);
+            let (scaled, counted) = render_film(&text(size), transport);
             assert_eq!(counted.rays, report.rays, "size 2^{power}");
             assert_same_but_depth(&scaled, &film, size as f32);
         }
@@ -146,9 +146,9 @@ fn s6_a_scene_scaled_by_a_power_of_two_gives_the_identical_image() {
 
 #[test]
 fn s6_the_comparison_notices_a_length_that_was_not_scaled() {
-    let (film, _) = image(&text(1.0), SPLITTING);
+    let (film, _) = render_film(&text(1.0), SPLITTING);
     let with_length_kept = text(2.0).replace("intensity = 24.0", "intensity = 6.0");
-    let (other, _) = image(&with_length_kept, SPLITTING);
+    let (other, _) = render_film(&with_length_kept, SPLITTING);
     assert!(film.pixels.iter().zip(&other.pixels).any(|(a, b)| a.rgb != b.rgb));
 }
 

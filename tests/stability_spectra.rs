@@ -11,7 +11,7 @@ use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Draw, Emission, Lanes,
 use abbe::trace::Method;
 
 use crate::support::pictures::read_png;
-use crate::support::scenes::{Mean, SPLITTING, film_of, films_of, method, scene, standard_errors, view};
+use crate::support::scenes::{Mean, SPLITTING, film_of, films_of, method, scene, sigma_limit, view};
 
 const SPACE: ColorSpace = ColorSpace::Rec709;
 
@@ -79,8 +79,9 @@ fn d11_vanishing_dispersion_is_neither_tinted_nor_noisier_than_none() {
     let vanishing = mean("{ cauchy = [1.5168, 1e-6] }", "\"hero\"", 0);
     let none = mean("1.5168", "{ bands = 12 }", 100);
     for band in 0..3 {
-        let (off, error) = ((vanishing.value[band] - none.value[band]).abs(), vanishing.beside(&none).error[band]);
-        assert!(off <= standard_errors(3) * error, "band {band}: {} and {}", vanishing.value[band], none.value[band]);
+        let (off, error) =
+            ((vanishing.value[band] - none.value[band]).abs(), vanishing.with_joint_error(&none).error[band]);
+        assert!(off <= sigma_limit(3) * error, "band {band}: {} and {}", vanishing.value[band], none.value[band]);
         let ratio = (vanishing.error[band] / none.error[band]).powi(2);
         assert!((0.9..1.1).contains(&ratio), "band {band}: {ratio} times the variance");
     }
@@ -102,14 +103,14 @@ fn d12_a_formula_is_not_followed_beyond_its_range() {
 
 /// Returns what a pixel of one sample receives of a light's own color through the heroes alone: mean and deviation of
 /// every channel.
-fn by_heroes(curve: &Curve) -> [(f64, f64); 3] {
+fn hero_moments(curve: &Curve) -> [(f64, f64); 3] {
     const SAMPLES: u32 = 4096;
     let basis = heroes(curve);
     let (table, response) = (basis.tabulate(Quantity::Emission, curve), basis.response(curve));
     let colors = (0..SAMPLES).map(|sample| {
-        let u = Sampler::new(7, [sample, 3], 0).four(BranchKey::CAMERA, 0)[2];
+        let u = Sampler::new(7, [sample, 3], 0).get_4d(BranchKey::CAMERA, 0)[2];
         let draw: Draw<16> = basis.draw(u);
-        response.sensor(&draw, draw.read(&table) * Lanes::ONE, true)
+        response.film_rgb(&draw, draw.read(&table) * Lanes::ONE, true)
     });
     let colors: Vec<[f64; 3]> = colors.collect();
     [0, 1, 2].map(|c| {
@@ -122,7 +123,7 @@ fn by_heroes(curve: &Curve) -> [(f64, f64); 3] {
 /// Light as even as daylight, and a line of the same power, 0.1 nm wide: once as an ideal line, once as samples.
 #[test]
 fn d13_narrow_lines_are_neither_lost_nor_noisy() {
-    let power = visible::luminous();
+    let power = visible::y_integral();
     let height = power / 0.1;
     let samples = [
         [380.0, 1.0],
@@ -142,13 +143,13 @@ fn d13_narrow_lines_are_neither_lost_nor_noisy() {
     for c in 0..3 {
         assert!((found[c] - exact[c]).abs() < 1e-3 * exact[0], "channel {c} is {} for {}", found[c], exact[c]);
     }
-    let (mean, deviation) = by_heroes(&sampled)[0];
+    let (mean, deviation) = hero_moments(&sampled)[0];
     assert!((mean - exact[0]).abs() < 4.0 * deviation / 64.0, "{mean} for {}", exact[0]);
     assert!(deviation / mean <= 1.1, "standard deviation {deviation} at mean {mean}");
     // With ideal lines alone, only the choice among them is random.
     let sodium = Curve::from(CurveKind::Lines(vec![[589.0, power]]));
     let color = Emission::new(&sodium, SPACE).color();
-    for (c, (mean, deviation)) in by_heroes(&sodium).into_iter().enumerate() {
+    for (c, (mean, deviation)) in hero_moments(&sodium).into_iter().enumerate() {
         assert!((mean - color[c]).abs() < 1e-6 * color[0] && deviation < 1e-6, "channel {c}: {mean} +- {deviation}");
     }
 }

@@ -13,7 +13,8 @@ use abbe::trace::{Transport, prepare, render};
 
 use crate::support::random::Random;
 use crate::support::scenes::{
-    Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, mean_color, moments, scene, view,
+    Mean, SINGLE_PATH, SPLITTING, body, environment, mean_and_variance, mean_color, render_film, render_films, scene,
+    view,
 };
 
 /// Returns twenty glass balls with radii of 0.35 to 0.65 in a box of edge 4. They do not touch, and they are under a
@@ -61,7 +62,7 @@ fn panes(seen: bool, side: u32) -> String {
 const REFLECTED: f64 = 20.0 * 0.04 / (1.0 + 19.0 * 0.04);
 
 /// Returns the transport that the plan chooses by itself, which must be a random one.
-fn planned(text: &str) -> Transport {
+fn planned_transport(text: &str) -> Transport {
     let transport = plan(&scene(text)).method.transport;
     assert!(matches!(transport, Transport::Random { .. }), "{transport:?}");
     transport
@@ -70,7 +71,7 @@ fn planned(text: &str) -> Transport {
 #[test]
 fn w1_a_camera_ray_into_a_cluster_of_glass_balls_costs_at_most_15_rays() {
     let text = glass_balls(100, "box", SUN_RADIUS, 30.0);
-    let (_, report) = image(&text, planned(&text));
+    let (_, report) = render_film(&text, planned_transport(&text));
     let rays = report.rays as f64 / report.samples as f64;
     println!("W1: {rays:.2} rays for each camera ray");
     assert!((2.0..=15.0).contains(&rays), "{rays} rays for each camera ray");
@@ -79,7 +80,7 @@ fn w1_a_camera_ray_into_a_cluster_of_glass_balls_costs_at_most_15_rays() {
 #[test]
 fn w2_a_stack_of_ten_panes_loses_no_light() {
     for (seen, expected) in [(true, 1.0 - REFLECTED), (false, REFLECTED)] {
-        let mean = Mean::of(&image(&panes(seen, 160), planned(&panes(seen, 1))).0);
+        let mean = Mean::of(&render_film(&panes(seen, 160), planned_transport(&panes(seen, 1))).0);
         println!("W2: {} +- {:.1e} for {expected:.6}", mean.value[0], mean.error[0]);
         assert!((mean.value[0] - expected).abs() <= 0.002, "{mean:?}");
         assert!(3.0 * mean.error[0] <= 0.002, "{mean:?}");
@@ -96,7 +97,7 @@ fn w3_light_caught_in_a_glass_cube_does_not_run_forever() {
     for (transport, side) in
         [(SPLITTING, 142), (SINGLE_PATH, 60), (Transport::Deterministic { cutoff: 1e-9, most: u64::MAX }, 60)]
     {
-        let (film, report) = image(&text(side), transport);
+        let (film, report) = render_film(&text(side), transport);
         // Pixels of a plane cover solid angles in proportion to the cube of the cosine.
         let solid_angle = |at: usize| {
             let place = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(side) - 1.0;
@@ -122,7 +123,7 @@ fn w4_roulette_below_any_weight_keeps_the_mean() {
     for (split, roulette, side) in
         [(1.0, 0.05, 120), (0.3, 0.3, 100), (0.05, 0.05, 64), (1e-2, 1e-2, 40), (1e-3, 1e-3, 24)]
     {
-        let mean = Mean::of(&image(&panes(true, side), Transport::Random { split, roulette }).0);
+        let mean = Mean::of(&render_film(&panes(true, side), Transport::Random { split, roulette }).0);
         println!("W4: split {split}: {} +- {:.1e}", mean.value[0], mean.error[0]);
         mean.assert_near([1.0 - REFLECTED; 3], 5, &format!("split {split}, roulette {roulette}"));
         assert!(mean.error[0] <= 0.004, "{mean:?}");
@@ -135,10 +136,10 @@ fn w5_splitting_and_roulette_agree_with_following_every_branch() {
     let radiance = 4.0;
     let text = glass_balls(24, "center", 28.0, radiance);
     let cutoff = 1e-7;
-    let (whole, report) = image(&text, Transport::Deterministic { cutoff, most: u64::MAX });
+    let (whole, report) = render_film(&text, Transport::Deterministic { cutoff, most: u64::MAX });
     let [whole, ..] = mean_color(&whole);
     for transport in [SPLITTING, SINGLE_PATH] {
-        let mean = Mean::rendered(&text, transport, 100);
+        let mean = Mean::render_text(&text, transport, 100);
         // Nothing is brighter than the sun, so at most this much is missing from the tree.
         let missing = radiance * report.dropped;
         println!("W5: {} +- {:.1e} for {whole}, missing at most {missing:.1e}", mean.value[0], mean.error[0]);
@@ -150,10 +151,10 @@ fn w5_splitting_and_roulette_agree_with_following_every_branch() {
 #[test]
 fn w5_splitting_is_at_least_3_times_as_efficient_as_a_single_path() {
     let text = glass_balls(40, "box", SUN_RADIUS, 30.0);
-    let [splitting, single] = [planned(&text), SINGLE_PATH].map(|transport| {
-        let (films, reports): (Vec<_>, Vec<_>) = images(&text, transport, 64).into_iter().unzip();
+    let [splitting, single] = [planned_transport(&text), SINGLE_PATH].map(|transport| {
+        let (films, reports): (Vec<_>, Vec<_>) = render_films(&text, transport, 64).into_iter().unzip();
         let rays = reports.iter().map(|report| report.rays as f64 / report.samples as f64).sum::<f64>();
-        let of_pixel = |at: usize| moments(films.iter().map(move |film| f64::from(film.pixels[at].rgb[0]))).1;
+        let of_pixel = |at: usize| mean_and_variance(films.iter().map(move |film| f64::from(film.pixels[at].rgb[0]))).1;
         1.0 / ((0..films[0].pixels.len()).map(of_pixel).sum::<f64>() * rays)
     });
     println!("W5: {:.2} times as efficient", splitting / single);
@@ -174,12 +175,12 @@ fn w6_light_in_a_closed_white_box_dies_out_at_the_right_radiance() {
     ];
     for (room, expected) in rooms {
         let text = view([0.0; 3], [0.0, 0.0, -1.0], 90.0, 60) + &body("white", &white, &[room]) + lit;
-        let (films, reports): (Vec<_>, Vec<_>) = images(&text, SPLITTING, 3).into_iter().unzip();
+        let (films, reports): (Vec<_>, Vec<_>) = render_films(&text, SPLITTING, 3).into_iter().unzip();
         let mean = Mean::over_seeds(&films);
         let rays = reports[0].rays as f64 / reports[0].samples as f64;
         println!("W6: {} +- {:.1e} for {expected}, {rays:.0} rays", mean.value[0], mean.error[0]);
         mean.assert_near([expected; 3], 1, room);
-        assert!(mean.worst_error([expected; 3]) <= 0.02, "{mean:?}");
+        assert!(mean.worst_relative_error([expected; 3]) <= 0.02, "{mean:?}");
     }
 }
 
@@ -189,16 +190,16 @@ fn a_surface_that_passes_no_light_on_shows_its_own_and_nothing_else() {
     let ball = body("ember", &format!("dielectric = {black}"), &["sphere = { center = [0, 0, 0], radius = 1 }"]);
     let text = view([0.0, 0.0, 5.0], [0.0; 3], 10.0, 16) + &ball + &environment(1.0);
     for transport in [SPLITTING, SINGLE_PATH, Transport::Deterministic { cutoff: 1e-9, most: u64::MAX }] {
-        let (film, report) = image(&text, transport);
+        let (film, report) = render_film(&text, transport);
         assert_eq!(report.non_finite, 0, "{transport:?}");
         assert!(film.pixels.iter().all(|pixel| pixel.rgb == [0.5; 3]), "{transport:?}");
     }
 }
 
 /// Returns bodies and panes in which the number of light paths grows with `count`.
-fn ways(kind: &str, count: i32) -> String {
+fn branching_scene(kind: &str, count: i32) -> String {
     let mirror = body("mirror", "mirror = {}", &["quad = { center = [0, 0, -6], u = [9, 1, 0], v = [0, 9, 0] }"]);
-    let of = |material: &str, shape: &dyn Fn(i32) -> String| {
+    let repeat_shape = |material: &str, shape: &dyn Fn(i32) -> String| {
         let shapes: Vec<String> = (0..count).map(shape).collect();
         body("glass", material, &shapes.iter().map(String::as_str).collect::<Vec<_>>())
     };
@@ -210,9 +211,9 @@ fn ways(kind: &str, count: i32) -> String {
         + "filter = \"center\"\n"
         + &environment(1.0)
         + &match kind {
-            "thin" => of("thin = { index = 1.5 }", &pane),
-            "slabs" => of(glass, &slab),
-            "slabs before a mirror" => of(glass, &slab) + &mirror,
+            "thin" => repeat_shape("thin = { index = 1.5 }", &pane),
+            "slabs" => repeat_shape(glass, &slab),
+            "slabs before a mirror" => repeat_shape(glass, &slab) + &mirror,
             _ => (0..count)
                 .map(|i| {
                     let material =
@@ -228,7 +229,7 @@ fn w7_where_light_has_too_many_ways_the_plan_leaves_them_to_chance_and_says_so()
     for kind in ["thin", "slabs", "slabs before a mirror", "shells"] {
         let mut by_chance = 0;
         for count in 2..=10 {
-            let scene = scene(&ways(kind, count));
+            let scene = scene(&branching_scene(kind, count));
             let mut plan = plan(&scene);
             let says = plan.because.iter().any(|line| line.contains("light has too many paths"));
             let random = matches!(plan.method.transport, Transport::Random { .. });
@@ -254,7 +255,7 @@ fn w7_where_light_has_too_many_ways_the_plan_leaves_them_to_chance_and_says_so()
 fn w7_a_camera_sample_that_meets_too_many_surfaces_goes_on_by_chance_to_the_same_mean() {
     let rendered = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| image(&panes(true, 20), Transport::Deterministic { cutoff: 1e-9, most: 16_384 }))
+        pool.install(|| render_film(&panes(true, 20), Transport::Deterministic { cutoff: 1e-9, most: 16_384 }))
     };
     let (film, report) = rendered(1);
     assert_eq!(report.by_chance, report.samples);
@@ -285,9 +286,9 @@ fn a_lamp_of_which_the_tip_is_seen_costs_no_more_than_the_tip() {
         )
         + &body("ceiling", "diffuse = { reflectance = 0 }", &[&ceiling])
         + &body("lamp", "emissive = { radiance = 12 }", &[&lamp]);
-    let mean = Mean::of(&image(&text, SPLITTING).0);
+    let mean = Mean::of(&render_film(&text, SPLITTING).0);
     mean.assert_near([expected; 3], 1, "floor below the tip");
     // With samples over the whole cone, 19 of 20 would see nothing: a deviation of 4 times the mean.
-    let deviation = mean.worst_error([expected; 3]) * f64::from(32 * 32 * samples).sqrt();
+    let deviation = mean.worst_relative_error([expected; 3]) * f64::from(32 * 32 * samples).sqrt();
     assert!(deviation < 0.5, "a sample deviates by {deviation}");
 }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use crate::support::larger::larger;
 use crate::support::pictures::{RGB8, write_png};
 use crate::support::random::Random;
-use crate::support::scenes::{assert_near, film_of, refusal_in, scene_in, view};
+use crate::support::scenes::{assert_near, film_of, first_mistake, scene_in, view};
 use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::{Scene, Source};
@@ -87,7 +87,7 @@ fn a_film_is_as_thick_as_its_image_says() {
          { index = 1.38, thickness_nm = 90 }] }",
     ];
     for material in materials {
-        let of = |x: f64, thickness: &str| {
+        let film_scene = |x: f64, thickness: &str| {
             let text = view([x, 0.0, 9.0], [x, 0.0, 0.0], 1e-3, 1)
                 + &format!("[render]\nsamples = 16\n[material.m]\n{}\n", material.replace("THICKNESS", thickness))
                 + "[[object]]\nshape.quad = { center = [0, 0, 0], u = [1, 0, 0], v = [0, 1, 0] }\nmaterial = \"m\"\n\
@@ -95,11 +95,11 @@ fn a_film_is_as_thick_as_its_image_says() {
                    shape.quad = { center = [0, 0, 10], u = [9, 0, 0], v = [0, -9, 0] }\n";
             scene_in(folder.path(), &text)
         };
-        let image = |x: f64| of(x, "{ image = \"grays.exr\", scale = 400 }");
+        let image = |x: f64| film_scene(x, "{ image = \"grays.exr\", scale = 400 }");
         let method = plan(&image(-0.5)).method;
         let seen = |scene: &Scene<Curve>| film_of(scene, method.clone()).pixels[0].rgb;
         let found = [-0.5, 0.5].map(|x| seen(&image(x)));
-        let expected = [(-0.5, "100"), (0.5, "300")].map(|(x, nm)| seen(&of(x, nm)));
+        let expected = [(-0.5, "100"), (0.5, "300")].map(|(x, nm)| seen(&film_scene(x, nm)));
         for (found, expected) in found.iter().zip(&expected) {
             let strongest = expected.iter().fold(0.0, |most: f32, x| larger(most, x.abs()));
             let is_near = (0..3).all(|i| (found[i] - expected[i]).abs() < 5e-4 * strongest);
@@ -167,7 +167,7 @@ fn a_texel_under_white_light_has_its_own_color() {
         for (i, texel) in texels.iter().enumerate() {
             let uv = [(i as f64 + 0.5) / texels.len() as f64, 0.5];
             let lanes: Lanes<MAX_LANES> = draw.read_at(&table, uv) * draw.read(&light);
-            let found = response.sensor(&draw, lanes, false);
+            let found = response.film_rgb(&draw, lanes, false);
             for c in 0..3 {
                 let off = (found[c] - f64::from(texel[c])).abs();
                 assert!(off <= tolerance, "{}: {texel:?} becomes {found:?}", basis.name());
@@ -196,7 +196,7 @@ fn squares_of_a_checkerboard_are_their_curves() {
     let folder = tempfile::tempdir().unwrap();
     write_png(folder.path(), "dots.png", 2, RGB8, &[200, 50, 20, 90, 90, 90]);
     let cells = ["\"dark skin\"", "{ image = \"dots.png\" }", "{ samples = [[400, 0.1], [700, 0.8]] }", "0.25"];
-    let see = |reflectance: &str, x: f64| {
+    let seen_color = |reflectance: &str, x: f64| {
         let text = format!(
             "{}[render]\nmodel = {{ bands = 16 }}\nsamples = 2\n\
              [material.even]\ndiffuse = {{ reflectance = {reflectance} }}\n\
@@ -210,7 +210,7 @@ fn squares_of_a_checkerboard_are_their_curves() {
     for [first, second] in [[cells[0], cells[1]], [cells[2], cells[3]]] {
         let checker = format!("{{ checker = [{first}, {second}] }}");
         for (x, cell) in [(0.5, first), (1.5, second), (-0.5, second), (-1.5, first)] {
-            assert!(see(&checker, x) == see(cell, x), "{checker} at {x} is not {cell}");
+            assert!(seen_color(&checker, x) == seen_color(cell, x), "{checker} at {x} is not {cell}");
         }
     }
 }

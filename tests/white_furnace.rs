@@ -8,7 +8,7 @@
 use abbe::material::{Index, Lobes, Material, ScatterContext};
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{self, LOSSLESS, context, material, toward};
+use crate::support::arrivals::{self, LOSSLESS, context, direction_at, material};
 
 const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
 const INDICES: [f64; 5] = [1.1, 1.33, 1.52, 1.9, 2.5];
@@ -22,7 +22,8 @@ const DRAWS: u32 = 1 << 14;
 /// spread.
 fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> [f64; 2] {
     let draw = Draw::<4>::fixed(3);
-    let context = ScatterContext { beyond: Index::Same(indices[1]), ..context(&draw, toward(cos, 0.4), indices[0]) };
+    let context =
+        ScatterContext { beyond: Index::Same(indices[1]), ..context(&draw, direction_at(cos, 0.4), indices[0]) };
     let [[shown, error], ..] = arrivals::furnace(material, &context, DRAWS);
     [shown, if material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION) { 3.0 * error } else { 0.0 }]
 }
@@ -61,15 +62,15 @@ fn nothing_is_lost_beyond_half_a_percent_nor_won_beyond_a_thousandth() {
     let mut worst = [1.0f64; 2];
     for (name, text, sides) in rows() {
         let material = material(&text);
-        let [mut least, mut most] = [f64::INFINITY, 0.0f64];
+        let [mut lowest, mut highest] = [f64::INFINITY, 0.0f64];
         for (&indices, cos) in sides.iter().flat_map(|indices| COSINES.map(|cos| (indices, cos))) {
             let [shown, chance] = furnace(&material, indices, cos);
-            [least, most] = [least.min(shown), most.max(shown)];
+            [lowest, highest] = [lowest.min(shown), highest.max(shown)];
             let allowed = 0.995 - chance..=1.001 + chance;
             assert!(allowed.contains(&shown), "{name}: {shown} between {indices:?} at the cosine {cos}");
         }
-        println!("{name:<64} {least:.5} to {most:.5}");
-        worst = [worst[0].min(least), worst[1].max(most)];
+        println!("{name:<64} {lowest:.5} to {highest:.5}");
+        worst = [worst[0].min(lowest), worst[1].max(highest)];
     }
     println!("{:<64} {:.5} to {:.5}", "all", worst[0], worst[1]);
 }

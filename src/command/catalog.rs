@@ -4,7 +4,7 @@ use abbe::spectrum::data::{self, GLASS_MAKERS, Glass};
 use abbe::{Error, Result};
 use clap::Parser;
 
-use super::messages::aligned;
+use super::messages::align_columns;
 
 const HELP: &str = "\
 Words are searched for in names, other names and makers, ignoring case; an entry must contain all of them. \
@@ -76,12 +76,12 @@ const KINDS: [Kind; 4] = [
 
 impl Kind {
     /// Returns the lines of the entries that match, below the titles of their columns if requested.
-    fn found(&self, words: &[String], titled: bool) -> Vec<String> {
+    fn matching_lines(&self, words: &[String], titled: bool) -> Vec<String> {
         let mut lines = (self.lines)(words);
         if titled && !lines.is_empty() {
             lines.insert(0, std::iter::once(&self.name).chain(self.titles).map(ToString::to_string).collect());
         }
-        aligned(&lines)
+        align_columns(&lines)
     }
 }
 
@@ -91,18 +91,18 @@ impl Kind {
 /// If nothing is found. The help contains the nearest names.
 pub fn lines(query: &Query, titled: bool) -> Result<Vec<String>> {
     let mut words: Vec<_> = query.words.iter().map(|word| word.to_lowercase()).collect();
-    let one =
+    let kind_index =
         words.first().and_then(|word| KINDS.iter().position(|kind| kind.name == word || kind.all.contains(&&**word)));
-    let kinds = one.map_or(&KINDS[..], |i| &KINDS[i..=i]);
-    words.drain(..usize::from(one.is_some()));
-    let found: Vec<_> = kinds.iter().flat_map(|kind| kind.found(&words, titled)).collect();
+    let kinds = kind_index.map_or(&KINDS[..], |i| &KINDS[i..=i]);
+    words.drain(..usize::from(kind_index.is_some()));
+    let found: Vec<_> = kinds.iter().flat_map(|kind| kind.matching_lines(&words, titled)).collect();
     if !found.is_empty() {
         return Ok(found);
     }
-    let what = one.map_or("entry", |i| KINDS[i].name);
-    let wanted = words.join(" ");
-    let near = nearest(&wanted, kinds.iter().flat_map(|kind| (kind.names)()).collect());
-    let message = format!("the catalog has no {what} that matches {wanted:?}");
+    let kind_name = kind_index.map_or("entry", |i| KINDS[i].name);
+    let phrase = words.join(" ");
+    let near = nearest(&phrase, kinds.iter().flat_map(|kind| (kind.names)()).collect());
+    let message = format!("the catalog has no {kind_name} that matches {phrase:?}");
     let help = match near.as_str() {
         "" => "render catalog --help says how to search".into(),
         near if !near.contains(',') => format!("the nearest name is {near}"),
@@ -111,19 +111,19 @@ pub fn lines(query: &Query, titled: bool) -> Result<Vec<String>> {
     Error::refuse(message, help)
 }
 
-/// Returns up to three nearest names, of those whose edit distance from `wanted` is at most half the shorter length.
-fn nearest(wanted: &str, mut names: Vec<&str>) -> String {
-    let changes = |name: &str| strsim::damerau_levenshtein(wanted, &name.to_lowercase());
-    names.retain(|name| 2 * changes(name) <= name.chars().count().min(wanted.chars().count()));
-    names.sort_by_cached_key(|name| (changes(name), *name));
+/// Returns up to three nearest names, of those whose edit distance from `phrase` is at most half the shorter length.
+fn nearest(phrase: &str, mut names: Vec<&str>) -> String {
+    let edit_distance = |name: &str| strsim::damerau_levenshtein(phrase, &name.to_lowercase());
+    names.retain(|name| 2 * edit_distance(name) <= name.chars().count().min(phrase.chars().count()));
+    names.sort_by_cached_key(|name| (edit_distance(name), *name));
     names.dedup();
     names[..names.len().min(3)].join(", ")
 }
 
-/// Returns whether every word is part of a name, or equal to `said`, the family of the entry.
-fn matches(words: &[String], names: &[&str], said: &str) -> bool {
+/// Returns whether every word is part of a name, or equal to `family`, the family of the entry.
+fn matches(words: &[String], names: &[&str], family: &str) -> bool {
     let names: Vec<_> = names.iter().map(|name| name.to_lowercase()).collect();
-    words.iter().all(|word| word == said || names.iter().any(|name| name.contains(word)))
+    words.iter().all(|word| word == family || names.iter().any(|name| name.contains(word)))
 }
 
 /// Returns the optical family of a maker's glass, flint or crown, or an empty text for any other glass.

@@ -12,10 +12,10 @@ use abbe::{Error, Options, Result};
 use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 
-use super::frames::{Frames, check_numbered, numbered};
-use super::meant::{meant, meant_below};
-use super::messages::{Listener, Protocol, is_colored, listener, speak_to};
-use super::outputs::{check_exposure, check_png, ends_in, is_standard};
+use super::frames::{Frames, check_has_number, frame_path};
+use super::meant::{suggest, suggest_for_subcommand};
+use super::messages::{Listener, Protocol, is_colored, listener, set_listener};
+use super::outputs::{check_exposure, check_png, has_extension, is_stdio};
 use super::{catalog, diff, info, keep, manual, merge, view};
 
 const HELP: &str = "\
@@ -193,12 +193,12 @@ fn overscan(text: &str) -> std::result::Result<Overscan, String> {
 
 fn crop(text: &str) -> std::result::Result<Window, String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
-    let read = |[left, top, width, height]: [&str; 4]| {
+    let parse_as = |[left, top, width, height]: [&str; 4]| {
         let [left, top] = [left, top].map(str::parse::<i32>);
         let [width, height] = [width, height].map(str::parse::<u32>);
         Some(Window { left: left.ok()?, top: top.ok()?, width: width.ok()?, height: height.ok()? })
     };
-    let window = <[&str; 4]>::try_from(parts).ok().and_then(read);
+    let window = <[&str; 4]>::try_from(parts).ok().and_then(parse_as);
     window.ok_or_else(|| "a crop is four whole numbers of pixels, such as 100,50,320,180".into())
 }
 
@@ -235,8 +235,8 @@ impl Jobs {
     /// Returns one job after another.
     pub fn each(&self) -> impl Iterator<Item = Result<Job>> {
         let numbers = self.0.frame.iter().flat_map(Frames::numbers).map(Some);
-        let without = self.0.frame.is_none().then_some(None);
-        numbers.chain(without).map(|frame| job((*self.0).clone(), frame))
+        let no_frame = self.0.frame.is_none().then_some(None);
+        numbers.chain(no_frame).map(|frame| job((*self.0).clone(), frame))
     }
 
     /// Returns the jobs of the frames with the lowest and the highest number.
@@ -256,7 +256,7 @@ impl Jobs {
         // Without a scene argument, the argument of --exr is the scene.
         let exr = exr.iter().flatten().filter(|_| scene.is_some());
         let files = exr.chain(png).chain(report).chain(plan_file);
-        files.into_iter().try_for_each(|path| check_numbered(path))
+        files.into_iter().try_for_each(|path| check_has_number(path))
     }
 }
 
@@ -299,135 +299,137 @@ pub enum Request {
 }
 
 /// Returns whether the arguments, which may contain mistakes, include `--progress` for a farm.
-fn asks_for_farm(words: &[OsString]) -> bool {
+fn has_progress_flag(words: &[OsString]) -> bool {
     words.iter().filter_map(|word| word.to_str()).any(|word| word.split('=').next() == Some("--progress"))
 }
 
 /// Parses the command line. Prints clap's own errors and exits, unless a program or a farm reads the messages.
 pub fn parse() -> Result<Request> {
     let words: Vec<OsString> = std::env::args_os().collect();
-    let below = BELOW.iter().find(|(name, ..)| words.get(1).is_some_and(|first| first == name));
-    if let Some((_, _, request)) = below {
+    let sub = SUBCOMMANDS.iter().find(|(name, ..)| words.get(1).is_some_and(|first| first == name));
+    if let Some((_, _, request)) = sub {
         return request(&words[1..]);
     }
     let parsed = Arguments::try_parse_from(&words);
-    speak_to(match &parsed {
-        Ok(arguments) if arguments.quiet => Listener::Busy,
+    set_listener(match &parsed {
+        Ok(arguments) if arguments.quiet => Listener::Quiet,
         Ok(arguments) if arguments.json => Listener::Program,
         Ok(Arguments { progress: Some(Protocol::Openjd), .. }) => Listener::Farm,
         Err(_) if words.iter().any(|word| word == "--json") => Listener::Program,
-        Err(_) if asks_for_farm(&words) => Listener::Farm,
+        Err(_) if has_progress_flag(&words) => Listener::Farm,
         _ => Listener::Person,
     });
-    if let Some((message, help)) = meant(parsed.as_ref().err(), &words, &BELOW.map(|(name, ..)| name)) {
+    if let Some((message, help)) = suggest(parsed.as_ref().err(), &words, &SUBCOMMANDS.map(|(name, ..)| name)) {
         return Error::refuse(message, help);
     }
-    parsed.map_or_else(told, |arguments| {
+    parsed.map_or_else(handle_clap_error, |arguments| {
         let jobs = Jobs(Box::new(arguments));
         jobs.check().map(|()| Request::Render(jobs))
     })
 }
 
 /// A subcommand: its name, its arguments, and a parser for its words, the first of which is its name.
-type Below = (&'static str, fn() -> Command, fn(&[OsString]) -> Result<Request>);
+type Subcommand = (&'static str, fn() -> Command, fn(&[OsString]) -> Result<Request>);
 
-const BELOW: [Below; 7] = [
-    ("catalog", catalog::Query::command, |words| read(words, Request::Catalog)),
-    ("info", info::Query::command, |words| read(words, Request::Info)),
-    ("view", view::Query::command, |words| read(words, Request::View)),
-    ("diff", diff::Query::command, |words| read(words, Request::Diff)),
+const SUBCOMMANDS: [Subcommand; 7] = [
+    ("catalog", catalog::Query::command, |words| parse_as(words, Request::Catalog)),
+    ("info", info::Query::command, |words| parse_as(words, Request::Info)),
+    ("view", view::Query::command, |words| parse_as(words, Request::View)),
+    ("diff", diff::Query::command, |words| parse_as(words, Request::Diff)),
     ("merge", merge::Query::command, |words| {
-        if asks_for_farm(words) {
-            speak_to(Listener::Farm);
+        if has_progress_flag(words) {
+            set_listener(Listener::Farm);
         }
-        read(words, Request::Merge)
+        parse_as(words, Request::Merge)
     }),
     ("completions", manual::Completions::command, |words| {
-        read(words, |query| Request::Answer(manual::completions(&query, whole())))
+        parse_as(words, |query| Request::Answer(manual::completions(&query, root())))
     }),
-    ("man", manual::Manual::command, |words| read(words, |manual::Manual {}| Request::Answer(manual::page(whole())))),
+    ("man", manual::Manual::command, |words| {
+        parse_as(words, |manual::Manual {}| Request::Answer(manual::page(root())))
+    }),
 ];
 
 /// Returns the command with all its subcommands.
-fn whole() -> Command {
-    let below = BELOW.map(|(name, arguments, _)| arguments().name(name).bin_name(format!("render {name}")));
-    Arguments::command().subcommands(below).disable_help_subcommand(true)
+fn root() -> Command {
+    let sub = SUBCOMMANDS.map(|(name, arguments, _)| arguments().name(name).bin_name(format!("render {name}")));
+    Arguments::command().subcommands(sub).disable_help_subcommand(true)
 }
 
-fn read<A: Parser>(words: &[OsString], request: fn(A) -> Request) -> Result<Request> {
-    let refused = |said| match meant_below(&said, words) {
+fn parse_as<A: Parser>(words: &[OsString], request: fn(A) -> Request) -> Result<Request> {
+    let refused = |clap_report| match suggest_for_subcommand(&clap_report, words) {
         Some((message, help)) => Error::refuse(message, help),
-        None => told(said),
+        None => handle_clap_error(clap_report),
     };
     A::try_parse_from(words).map_or_else(refused, |arguments| Ok(request(arguments)))
 }
 
 /// Converts what clap reports: help and the version become answers, mistakes become errors or end the process.
-fn told(said: clap::Error) -> Result<Request> {
-    if let (ErrorKind::ValueValidation, Some(why)) = (said.kind(), said.source()) {
+fn handle_clap_error(clap_report: clap::Error) -> Result<Request> {
+    if let (ErrorKind::ValueValidation, Some(why)) = (clap_report.kind(), clap_report.source()) {
         // Such as `--layers <NAMES>`.
-        let flag = said.get(ContextKind::InvalidArg).map(ToString::to_string).unwrap_or_default();
+        let flag = clap_report.get(ContextKind::InvalidArg).map(ToString::to_string).unwrap_or_default();
         let flag = flag.split(' ').next().unwrap_or_default();
-        let given = said.get(ContextKind::InvalidValue).map(ToString::to_string).unwrap_or_default();
+        let given = clap_report.get(ContextKind::InvalidValue).map(ToString::to_string).unwrap_or_default();
         let message = match (why.is::<ParseIntError>(), why.is::<ParseFloatError>()) {
             (true, _) => format!("{flag} takes a whole number, not {given}"),
             (_, true) => format!("{flag} takes a number, not {given}"),
-            _ => match within(&why.to_string()) {
+            _ => match allowed_range(&why.to_string()) {
                 Some(range) => format!("{flag} takes a whole number {range}, not {given}"),
                 None => format!("{flag}: {why}"),
             },
         };
         return Err(Error::Arguments { message, help: None });
     }
-    if said.use_stderr() && matches!(listener(), Listener::Program | Listener::Farm) {
-        let text = said.render().to_string();
+    if clap_report.use_stderr() && matches!(listener(), Listener::Program | Listener::Farm) {
+        let text = clap_report.render().to_string();
         let (message, _) = text.split_once("\n\n").unwrap_or((&text, ""));
         return Error::refuse(message.strip_prefix("error: ").unwrap_or(message), "render --help lists all arguments");
     }
-    if said.use_stderr() {
-        said.exit();
+    if clap_report.use_stderr() {
+        clap_report.exit();
     }
-    let styled = said.render();
+    let styled = clap_report.render();
     let text = if is_colored(&std::io::stdout()) { styled.ansi().to_string() } else { styled.to_string() };
     Ok(Request::Answer(text))
 }
 
 /// Finds the allowed range of a number in clap's message, and returns it in words.
-fn within(said: &str) -> Option<String> {
-    let (_, range) = said.split_once(" is not in ")?;
+fn allowed_range(clap_report: &str) -> Option<String> {
+    let (_, range) = clap_report.split_once(" is not in ")?;
     let (first, last) = range.split_once("..=")?;
     Some(format!("from {first} to {last}"))
 }
 
 fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
-    let idle = [("--plan", arguments.plan), ("--check", arguments.check)];
-    let idle = idle.into_iter().find_map(|(flag, asked)| asked.then_some(flag));
-    let with_exr = idle.is_none() && (arguments.exr.is_some() || arguments.png.is_none());
-    let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, idle)?;
+    let noop = [("--plan", arguments.plan), ("--check", arguments.check)];
+    let noop = noop.into_iter().find_map(|(flag, asked)| asked.then_some(flag));
+    let with_exr = noop.is_none() && (arguments.exr.is_some() || arguments.png.is_none());
+    let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, noop)?;
     check_exposure(arguments.exposure)?;
     if arguments.exposure.is_some() && arguments.png.is_none() {
         let help = "add --png look.png, or leave --exposure out";
         return Error::refuse("--exposure brightens only the picture of --png, and --png is not given", help);
     }
     check_png(arguments.png.as_deref())?;
-    arguments.keep.check(idle, with_exr, arguments.png.is_some(), arguments.stamp)?;
+    arguments.keep.check(noop, with_exr, arguments.png.is_some(), arguments.stamp)?;
     if arguments.spectral && !with_exr && arguments.png.is_some() {
         let help = "add --exr, or leave --spectral out";
         return Error::refuse("--spectral writes spectra beside an EXR, and --png alone writes no EXR", help);
     }
-    let mut plan_file = arguments.plan_file.map(|path| numbered(&path, frame)).transpose()?;
+    let mut plan_file = arguments.plan_file.map(|path| frame_path(&path, frame)).transpose()?;
     let output = if arguments.plan {
         Output::Plan(plan_file.take())
     } else if arguments.check {
         Output::Check
     } else {
-        let named = |exr: Option<PathBuf>| exr.map_or_else(|| beside(&scene, frame), |exr| numbered(&exr, frame));
+        let named = |exr: Option<PathBuf>| exr.map_or_else(|| exr_path(&scene, frame), |exr| frame_path(&exr, frame));
         let exr = with_exr.then(|| named(exr)).transpose()?;
-        Output::Image { exr, png: arguments.png.map(|path| numbered(&path, frame)).transpose()? }
+        Output::Image { exr, png: arguments.png.map(|path| frame_path(&path, frame)).transpose()? }
     };
-    let talks = [("--json", arguments.json), ("--progress", arguments.progress.is_some())];
-    if let (Output::Image { exr: Some(exr), .. }, Some((flag, _))) = (&output, talks.iter().find(|(_, asked)| *asked))
-        && is_standard(exr)
+    let flags = [("--json", arguments.json), ("--progress", arguments.progress.is_some())];
+    if let (Output::Image { exr: Some(exr), .. }, Some((flag, _))) = (&output, flags.iter().find(|(_, asked)| *asked))
+        && is_stdio(exr)
     {
         let message = format!("{flag} and --exr - would both write to standard output");
         return Error::refuse(message, "name the image, as in --exr out/frame.exr");
@@ -450,22 +452,22 @@ fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
         plan: plan_file,
         stamp,
     };
-    let report = arguments.report.map(|path| numbered(&path, frame)).transpose()?;
+    let report = arguments.report.map(|path| frame_path(&path, frame)).transpose()?;
     let set = frame.map(|frame| format!("set.frame={frame}")).into_iter().chain(arguments.set).collect();
     Ok(Job { frame, scene, set, output, exposure, options, keep, report })
 }
 
 /// Tells the scene from the image. `--exr` may take an image, but right before the only path it takes the scene.
 ///
-/// `idle` is the flag that renders nothing, if one is given.
+/// `noop` is the flag that renders nothing, if one is given.
 fn scene_and_image(
     scene: Option<PathBuf>,
     exr: Option<Option<PathBuf>>,
-    idle: Option<&str>,
+    noop: Option<&str>,
 ) -> Result<(PathBuf, Option<PathBuf>)> {
-    let is_exr = |path: &Path| ends_in(path, "exr");
+    let is_exr = |path: &Path| has_extension(path, "exr");
     match (scene, exr.flatten()) {
-        (Some(scene), Some(image)) if is_exr(&image) || is_standard(&image) => match idle {
+        (Some(scene), Some(image)) if is_exr(&image) || is_stdio(&image) => match noop {
             Some(flag) => {
                 let message = format!("{flag} renders nothing, so {} would not be written", image.display());
                 Error::refuse(message, "leave one of them out")
@@ -483,8 +485,8 @@ fn scene_and_image(
 }
 
 /// Returns the name of the scene, followed by the number of its frame and `.exr`, in the current folder.
-fn beside(scene: &Path, frame: Option<u32>) -> Result<PathBuf> {
-    if is_standard(scene) {
+fn exr_path(scene: &Path, frame: Option<u32>) -> Result<PathBuf> {
+    if is_stdio(scene) {
         let message = "a scene from standard input has no file name to name the image after";
         return Error::refuse(message, "name the image, as in render - --exr out/frame.exr");
     }

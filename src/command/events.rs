@@ -9,7 +9,7 @@ use abbe::{Diagnostic, Error, Image, Lines, PlanAccount, RenderAccount, Result};
 use serde::{Serialize, Serializer};
 
 use super::problem::problem;
-use super::stdout::tell;
+use super::stdout::print;
 
 /// Something that happened or was found out.
 #[derive(Serialize)]
@@ -104,7 +104,7 @@ impl<'e> Event<'e> {
     }
 
     /// Prints the event on stdout. If nobody reads it, the work goes on.
-    pub fn tell(&self) {
-        self.line().iter().for_each(|line| tell(line));
+    pub fn print(&self) {
+        self.line().iter().for_each(|line| print(line));
     }
 }

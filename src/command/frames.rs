@@ -20,18 +20,18 @@ struct Run {
 impl Frames {
     /// Returns the number of each frame once.
     pub fn numbers(&self) -> impl Iterator<Item = u32> {
-        let of_run = |(place, run): (usize, &Run)| {
+        let run_numbers = |(place, run): (usize, &Run)| {
             let before = &self.0[..place];
             run.numbers().filter(move |&number| !before.iter().any(|run| run.contains(number)))
         };
-        self.0.iter().enumerate().flat_map(of_run)
+        self.0.iter().enumerate().flat_map(run_numbers)
     }
 
     /// Returns the lowest and the highest number.
     pub fn ends(&self) -> impl Iterator<Item = u32> {
-        let least = self.0.iter().map(|run| run.first).min();
-        let greatest = self.0.iter().map(|run| run.last - (run.last - run.first) % run.step).max();
-        least.into_iter().chain(greatest)
+        let lowest = self.0.iter().map(|run| run.first).min();
+        let highest = self.0.iter().map(|run| run.last - (run.last - run.first) % run.step).max();
+        lowest.into_iter().chain(highest)
     }
 
     /// Returns the number of frames.
@@ -83,14 +83,14 @@ impl FromStr for Run {
 }
 
 /// The maximum number of digits for a frame in a file name, more than any frame number has.
-const MOST_DIGITS: usize = 20;
+const MAX_DIGITS: usize = 20;
 
 /// Replaces `%04d`, or another number of digits, by the number of the frame, and `%%` by a percent sign.
 ///
 /// # Errors
 /// If the path needs a number and no frame is given, or if a frame is given and the path has a place for it only in the
 /// notation of other programs.
-pub fn numbered(path: &Path, frame: Option<u32>) -> Result<PathBuf> {
+pub fn frame_path(path: &Path, frame: Option<u32>) -> Result<PathBuf> {
     let Some(text) = path.to_str() else { return Ok(path.to_owned()) };
     let (mut name, mut rest, mut is_numbered) = (String::new(), text, false);
     while let Some((before, after)) = rest.split_once('%') {
@@ -112,8 +112,8 @@ pub fn numbered(path: &Path, frame: Option<u32>) -> Result<PathBuf> {
         };
     }
     name.push_str(rest);
-    match foreign(text).filter(|_| frame.is_some() && !is_numbered) {
-        Some(mark) => Error::refuse(one_name(text), format!("write %04d in place of {mark}")),
+    match foreign_placeholder(text).filter(|_| frame.is_some() && !is_numbered) {
+        Some(mark) => Error::refuse(overwritten_message(text), format!("write %04d in place of {mark}")),
         None => Ok(name.into()),
     }
 }
@@ -122,8 +122,8 @@ pub fn numbered(path: &Path, frame: Option<u32>) -> Result<PathBuf> {
 ///
 /// # Errors
 /// If it contains none, or one in the notation of other programs.
-pub fn check_numbered(path: &Path) -> Result<()> {
-    if numbered(path, Some(0))? != numbered(path, Some(1))? {
+pub fn check_has_number(path: &Path) -> Result<()> {
+    if frame_path(path, Some(0))? != frame_path(path, Some(1))? {
         return Ok(());
     }
     let example = match (path.file_stem().and_then(|stem| stem.to_str()), path.extension().and_then(|end| end.to_str()))
@@ -132,12 +132,12 @@ pub fn check_numbered(path: &Path) -> Result<()> {
         _ => "turn.%04d.exr".into(),
     };
     Error::refuse(
-        one_name(&path.display().to_string()),
+        overwritten_message(&path.display().to_string()),
         format!("put the frame number into the name: {}", example.display()),
     )
 }
 
-fn one_name(path: &str) -> String {
+fn overwritten_message(path: &str) -> String {
     format!("{path} would be written by every frame")
 }
 
@@ -149,17 +149,17 @@ fn digits(text: &str) -> Option<(usize, &str)> {
     if number.is_empty() {
         return Some((0, rest)).filter(|_| !rest.starts_with(char::is_alphabetic));
     }
-    let digits = number.parse().ok().filter(|&digits| digits <= MOST_DIGITS)?;
+    let digits = number.parse().ok().filter(|&digits| digits <= MAX_DIGITS)?;
     Some((digits, rest))
 }
 
 /// Finds the placeholder that other programs use for the number of a frame.
-fn foreign(text: &str) -> Option<&str> {
+fn foreign_placeholder(text: &str) -> Option<&str> {
     let run = |of: char| {
         let from = &text[text.find([of, of].iter().collect::<String>().as_str())?..];
         Some(&from[..from.len() - from.trim_start_matches(of).len()])
     };
-    let alone = |mark: &str| {
+    let whole_word = |mark: &str| {
         let ends = |at: usize| at + mark.len();
         let (at, _) = text.match_indices(mark).find(|(at, _)| !text[ends(*at)..].starts_with(char::is_alphabetic))?;
         let after = text[ends(at)..].trim_start_matches(|letter: char| letter.is_ascii_digit());
@@ -171,10 +171,10 @@ fn foreign(text: &str) -> Option<&str> {
     };
     run('#')
         .or_else(|| run('@'))
-        .or_else(|| alone("$frame"))
-        .or_else(|| alone("$F"))
+        .or_else(|| whole_word("$frame"))
+        .or_else(|| whole_word("$F"))
         .or_else(python)
-        .or_else(|| alone("%s"))
+        .or_else(|| whole_word("%s"))
 }
 
 #[cfg(test)]
@@ -182,7 +182,7 @@ mod tests {
     use super::*;
 
     fn name(path: &str, frame: Option<u32>) -> Option<String> {
-        numbered(Path::new(path), frame).map(|path| path.display().to_string()).ok()
+        frame_path(Path::new(path), frame).map(|path| path.display().to_string()).ok()
     }
 
     #[test]
@@ -211,20 +211,20 @@ mod tests {
     }
 
     #[test]
-    fn a_name_without_a_number_is_no_name_of_several_frames() {
-        let help = |path: &str| match check_numbered(Path::new(path)) {
+    fn a_name_without_a_number_is_refused_for_several_frames() {
+        let help = |path: &str| match check_has_number(Path::new(path)) {
             Err(abbe::Error::Arguments { message, help: Some(help) }) => Some([message, help]),
             _ => None,
         };
         assert_eq!(help("out/turn.%04d.exr"), None);
-        let [message, told] = help("out/turn.exr").expect("it is refused");
+        let [message, advice] = help("out/turn.exr").expect("it is refused");
         assert_eq!(message, "out/turn.exr would be written by every frame");
-        assert_eq!(told, "put the frame number into the name: out/turn.%04d.exr");
+        assert_eq!(advice, "put the frame number into the name: out/turn.%04d.exr");
         assert!(help("-").is_some() && help("100%%d.exr").is_some());
     }
 
     #[test]
-    fn a_number_takes_at_least_so_many_digits_where_the_name_asks_for_it() {
+    fn numbers_are_padded_to_the_digits_that_the_name_asks_for() {
         assert_eq!(name("out/turn.%04d.exr", Some(7)).as_deref(), Some("out/turn.0007.exr"));
         assert_eq!(name("turn.%04d.exr", Some(12345)).as_deref(), Some("turn.12345.exr"));
         assert_eq!(name("%d.exr", Some(7)).as_deref(), Some("7.exr"));
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_is_asked_for_as_elsewhere_is_refused() {
+    fn placeholders_of_other_programs_are_refused() {
         for (plain, mark) in [
             ("f.####.exr", "####"),
             ("f.@@@.exr", "@@@"),
@@ -256,7 +256,7 @@ mod tests {
             ("f.{frame:04}.exr", "{frame:04}"),
             ("f.%s.exr", "%s"),
         ] {
-            assert_eq!(foreign(plain), Some(mark));
+            assert_eq!(foreign_placeholder(plain), Some(mark));
             assert_eq!(name(plain, Some(7)), None);
             assert_eq!(name(plain, None).as_deref(), Some(plain));
         }

@@ -11,7 +11,7 @@ use abbe::{Advance, Error, ImageError, Options, Rendering, Result, Resumed, Scen
 use abbe::{has_finished, is_checkpoint};
 use clap::Args;
 
-use super::messages::{say, so_far, warn};
+use super::messages::{error_so_far, say, warn};
 use super::problem::problem;
 use super::progress::Progress;
 use super::signals::{self, is_stopped};
@@ -40,7 +40,7 @@ pub struct Flags {
 }
 
 /// The time between checkpoints if --resume is given without --checkpoint.
-const OFTEN: Duration = Duration::from_secs(60);
+const DEFAULT_INTERVAL: Duration = Duration::from_secs(60);
 
 pub fn time(text: &str) -> std::result::Result<Duration, String> {
     duration(text).ok_or_else(|| "a time is a number with a unit, such as 60s, 5m or 1h".into())
@@ -59,17 +59,17 @@ impl Flags {
         self.shard.unwrap_or_default()
     }
 
-    /// Refuses flags that do not fit the other arguments. `idle` is the flag that renders nothing, if one is given, and
+    /// Refuses flags that do not fit the other arguments. `noop` is the flag that renders nothing, if one is given, and
     /// `exr` and `png` tell whether these images are written.
     ///
     /// # Errors
     /// If there is such a flag.
-    pub fn check(&self, idle: Option<&str>, exr: bool, png: bool, stamp: bool) -> Result<()> {
+    pub fn check(&self, noop: Option<&str>, exr: bool, png: bool, stamp: bool) -> Result<()> {
         let keeps = [("--checkpoint", self.checkpoint.is_some()), ("--resume", self.resume)];
         // If an error or a time ends the render, each part has a plan of its own, so --plan may go with --shard.
-        let is_planned = idle == Some("--plan");
+        let is_planned = noop == Some("--plan");
         let flags = [("--snapshot", self.snapshot.is_some()), ("--shard", self.shard.is_some() && !is_planned)];
-        if let Some((flag, _)) = keeps.into_iter().chain(flags).find(|(_, given)| *given && idle.is_some()) {
+        if let Some((flag, _)) = keeps.into_iter().chain(flags).find(|(_, given)| *given && noop.is_some()) {
             return Error::refuse(format!("{flag} belongs to a render, and nothing is rendered"), "leave it out");
         }
         if self.shard.is_some() && !is_planned && (!exr || png) {
@@ -92,7 +92,7 @@ impl Flags {
     ///
     /// # Errors
     /// If a flag asks to keep something.
-    pub fn check_standard(&self) -> Result<()> {
+    pub fn check_stdout(&self) -> Result<()> {
         let keeps = self.checkpoint.or(self.snapshot).is_some() || self.resume || self.shard.is_some();
         if keeps {
             let message = "--checkpoint, --resume, --snapshot and --shard write files beside the image, which standard output does not allow";
@@ -106,7 +106,7 @@ impl Flags {
     /// # Errors
     /// If Ctrl-C cannot be caught.
     pub fn catch_signals(&self) -> Result<()> {
-        signals::catch(self.checkpoint.or(self.snapshot).is_none() && !self.resume)
+        signals::catch_ctrl_c(self.checkpoint.or(self.snapshot).is_none() && !self.resume)
     }
 
     /// Returns the path of the checkpoint of a render to `file`, if one is kept.
@@ -123,13 +123,13 @@ impl Flags {
 }
 
 /// The files that keep the state of a render, and when they are written.
-pub struct Keep {
+pub struct Saver {
     files: Files,
     checkpoints: Timer,
     snapshots: Timer,
     resume: bool,
     /// What the files of a finished render depend on besides its samples.
-    way: String,
+    settings: String,
 }
 
 /// The files that keep the state of a render.
@@ -160,16 +160,16 @@ impl Files {
     }
 }
 
-impl Keep {
-    /// Prepares to keep a render to `file`, with a checkpoint if its path is given. `way` is what the files of the
+impl Saver {
+    /// Prepares to keep a render to `file`, with a checkpoint if its path is given. `settings` is what the files of the
     /// render depend on besides its samples.
     ///
     /// # Errors
     /// If the checkpoint of an earlier run or another file would be overwritten.
-    pub fn new(flags: &Flags, file: &Path, checkpoint: Option<PathBuf>, way: String) -> Result<Self> {
-        if let Some(there) = checkpoint.as_deref().filter(|path| !flags.resume && path.exists()) {
-            let name = there.display();
-            if !is_checkpoint(there)? {
+    pub fn new(flags: &Flags, file: &Path, checkpoint: Option<PathBuf>, settings: String) -> Result<Self> {
+        if let Some(existing) = checkpoint.as_deref().filter(|path| !flags.resume && path.exists()) {
+            let name = existing.display();
+            if !is_checkpoint(existing)? {
                 let help = "name another image, or move that file away";
                 return Error::refuse(format!("{name} would be overwritten, but it is not a checkpoint"), help);
             }
@@ -179,10 +179,10 @@ impl Keep {
         let snapshot = flags.snapshot.map(|_| file.to_owned());
         Ok(Self {
             files: Files { checkpoint, snapshot, has_snapshot: Cell::new(false) },
-            checkpoints: Timer::new(flags.checkpoint.or(flags.resume.then_some(OFTEN))),
+            checkpoints: Timer::new(flags.checkpoint.or(flags.resume.then_some(DEFAULT_INTERVAL))),
             snapshots: Timer::new(flags.snapshot),
             resume: flags.resume,
-            way,
+            settings,
         })
     }
 
@@ -191,7 +191,7 @@ impl Keep {
     pub fn has_finished(&self, scene: &Scene, options: &Options, outputs: &[&Path]) -> bool {
         // A plan that is followed is checked in any case.
         let path = self.files.checkpoint.as_deref().filter(|_| self.resume && options.plan.is_none());
-        let finished = path.filter(|path| has_finished(path, scene, options.shard, outputs, &self.way));
+        let finished = path.filter(|path| has_finished(path, scene, options.shard, outputs, &self.settings));
         finished.inspect(|path| say_finished(path)).is_some()
     }
 
@@ -209,7 +209,7 @@ impl Keep {
         }
         let name = path.display();
         let resumed = rendering.resume(path)?;
-        let missing = outputs.iter().find(|output| !rendering.has_written(output, &self.way));
+        let missing = outputs.iter().find(|output| !rendering.has_written(output, &self.settings));
         match resumed {
             Resumed::Continues => {
                 let share = rendering.done() as f64 / rendering.work().max(1) as f64;
@@ -241,25 +241,25 @@ impl Keep {
     /// If the render was stopped and cannot be saved.
     pub fn run(&mut self, rendering: &mut Rendering, progress: &Progress) -> Result<bool> {
         signals::begin_work();
-        let mut looked = rendering.error();
+        let mut last_error = rendering.error();
         loop {
             let is_due = || is_stopped() || self.checkpoints.is_due() || self.snapshots.is_due();
             let advance = rendering.advance_until(&|done| progress.advance(done), &is_due);
-            progress.expect(rendering);
+            progress.update_total(rendering);
             if advance == Advance::Finished {
                 return Ok(true);
             }
             let error = rendering.error();
-            if error != looked {
-                let more = more_samples(rendering, error.as_ref()).zip(progress.left());
-                error.iter().for_each(|error| progress.say(&so_far(error, more.as_ref())));
-                looked = error;
+            if error != last_error {
+                let more = expected_samples(rendering, error.as_ref()).zip(progress.left());
+                error.iter().for_each(|error| progress.say(&error_so_far(error, more.as_ref())));
+                last_error = error;
             }
             if is_stopped() {
-                return self.keep_at_last(rendering, progress).map(|()| false);
+                return self.save_stopped(rendering, progress).map(|()| false);
             }
             if advance == Advance::Stopped {
-                let kept = self.keep(rendering);
+                let kept = self.save_progress(rendering);
                 // The render is worth more than a failed save: it continues, and its image may still be written.
                 kept.unwrap_or_else(|error| {
                     progress.warn(&format!("the render goes on, but {}", problem(&error)));
@@ -269,7 +269,7 @@ impl Keep {
     }
 
     /// Saves a stopped render as a checkpoint and as a snapshot. If one fails, the other is still written.
-    fn keep_at_last(&self, rendering: &Rendering, progress: &Progress) -> Result<()> {
+    fn save_stopped(&self, rendering: &Rendering, progress: &Progress) -> Result<()> {
         let (saved, taken) = (self.files.save(rendering), self.files.take_snapshot(rendering));
         if self.files.checkpoint.is_some() && saved.is_ok() {
             // The render can be resumed without its snapshot.
@@ -288,7 +288,7 @@ impl Keep {
     }
 
     /// Writes the checkpoint, and the snapshot if it is due.
-    fn keep(&mut self, rendering: &Rendering) -> Result<()> {
+    fn save_progress(&mut self, rendering: &Rendering) -> Result<()> {
         let Self { files, checkpoints, snapshots, .. } = self;
         let mut save = || checkpoints.run(|| files.save(rendering));
         if !snapshots.is_due() {
@@ -301,8 +301,11 @@ impl Keep {
     /// Writes the checkpoint of a finished render and records its written files, if one is kept. A failure is only a
     /// warning, because the image exists all the same.
     pub fn finish(&self, rendering: &Rendering, written: &[&Path]) {
-        let kept =
-            self.files.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save_finished(path, written, &self.way));
+        let kept = self
+            .files
+            .checkpoint
+            .as_ref()
+            .map_or(Ok(()), |path| rendering.save_finished(path, written, &self.settings));
         kept.unwrap_or_else(|error| warn(&format!("the render is finished, but {}", problem(&error))));
     }
 
@@ -329,17 +332,17 @@ fn say_finished(checkpoint: &Path) {
 
 /// Estimates how many samples per pixel will be taken in total. Returns none if that is not known, or if there are
 /// already as many.
-fn more_samples(rendering: &Rendering, error: Option<&ImageError>) -> Option<u32> {
-    let most = rendering.plan().method.stop.as_ref()?.most;
+fn expected_samples(rendering: &Rendering, error: Option<&ImageError>) -> Option<u32> {
+    let max = rendering.plan().method.stop.as_ref()?.most;
     let times = rendering.work() as f64 / rendering.done().max(1) as f64;
-    more_than(error?.noise.samples, times, most)
+    scaled_up(error?.noise.samples, times, max)
 }
 
-/// Returns `taken` multiplied by `times`, but at most `most`, if that is more than `taken`. The work is known only to
+/// Returns `taken` multiplied by `times`, but at most `max`, if that is more than `taken`. The work is known only to
 /// within a few photons, so `times` may be slightly too large.
-fn more_than(taken: u32, times: f64, most: u32) -> Option<u32> {
-    let wanted = ((f64::from(taken) * times).round() as u32).min(most);
-    (wanted > taken).then_some(wanted)
+fn scaled_up(taken: u32, times: f64, max: u32) -> Option<u32> {
+    let scaled = ((f64::from(taken) * times).round() as u32).min(max);
+    (scaled > taken).then_some(scaled)
 }
 
 /// Quotes a word for the shell.
@@ -366,10 +369,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_more_samples_are_said_to_be_taken_than_may_be() {
-        assert_eq!(more_than(8192, 8.0002, 65536), Some(65536));
-        assert_eq!(more_than(8192, 2.0, 65536), Some(16384));
-        assert_eq!(more_than(65536, 1.0001, 65536), None);
+    fn no_more_samples_are_announced_than_allowed() {
+        assert_eq!(scaled_up(8192, 8.0002, 65536), Some(65536));
+        assert_eq!(scaled_up(8192, 2.0, 65536), Some(16384));
+        assert_eq!(scaled_up(65536, 1.0001, 65536), None);
     }
 
     #[test]

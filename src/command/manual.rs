@@ -35,7 +35,7 @@ pub fn completions(query: &Completions, mut command: Command) -> String {
 
 /// Returns the manual page of a command and all its subcommands.
 pub fn page(command: Command) -> String {
-    let below: Vec<Command> = command.get_subcommands().cloned().collect();
+    let subcommands: Vec<Command> = command.get_subcommands().cloned().collect();
     let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
     let man = Man::new(command);
     let mut page = Vec::new();
@@ -46,7 +46,7 @@ pub fn page(command: Command) -> String {
     let _ = man.render_description_section(&mut page);
     let _ = man.render_options_section(&mut page);
     page.extend(b".SH COMMANDS\n");
-    below.into_iter().for_each(|command| add_command(command, &mut page));
+    subcommands.into_iter().for_each(|command| add_command(command, &mut page));
     page.extend(b".SH EXAMPLES\n");
     page.extend(after_help(&after).bytes());
     let _ = man.render_version_section(&mut page);
@@ -59,14 +59,15 @@ fn add_command(command: Command, page: &mut Vec<u8>) {
     let about = command.get_about().map(ToString::to_string).unwrap_or_default();
     let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
     let man = Man::new(command);
-    let mut told = Vec::new();
-    let _ = man.render_synopsis_section(&mut told);
-    told.extend(format!(".PP\n{}.\n", escaped(about.trim_end_matches('.'))).bytes());
-    let _ = man.render_options_section(&mut told);
-    let told = String::from_utf8_lossy(&told);
+    let mut section = Vec::new();
+    let _ = man.render_synopsis_section(&mut section);
+    section.extend(format!(".PP\n{}.\n", escaped(about.trim_end_matches('.'))).bytes());
+    let _ = man.render_options_section(&mut section);
+    let section = String::from_utf8_lossy(&section);
     // The lines stand in a section already, and need no headings and definitions of their own.
-    let lines =
-        told.lines().filter(|line| !line.starts_with(".SH ") && !line.starts_with(".ie") && !line.starts_with(".el"));
+    let lines = section
+        .lines()
+        .filter(|line| !line.starts_with(".SH ") && !line.starts_with(".ie") && !line.starts_with(".el"));
     page.extend(format!(".SS \"{}\"\n", escaped(&name)).bytes());
     page.extend(lines.flat_map(|line| format!("{line}\n").into_bytes()));
     page.extend(format!(".PP\n{}", after_help(&after)).bytes());
@@ -78,9 +79,9 @@ fn after_help(text: &str) -> String {
     let text = text.find("Examples:").filter(|_| text.starts_with("Commands:")).map_or(text, |start| &text[start..]);
     let roff = text.lines().map(|line| match line.strip_prefix("  ") {
         Some(example) => {
-            let (command, what) = example.split_once("  ").unwrap_or((example, ""));
-            let what = if what.is_empty() { String::new() } else { format!("{}\n", escaped(what.trim())) };
-            format!(".TP\n\\fB{}\\fR\n{what}", escaped(command))
+            let (command, effect) = example.split_once("  ").unwrap_or((example, ""));
+            let effect = if effect.is_empty() { String::new() } else { format!("{}\n", escaped(effect.trim())) };
+            format!(".TP\n\\fB{}\\fR\n{effect}", escaped(command))
         }
         None if line.is_empty() || line == "Examples:" => ".PP\n".into(),
         None => format!("{}\n", escaped(line)),

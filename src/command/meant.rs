@@ -19,7 +19,7 @@ const FLAGS: [(&str, &str); 8] = [
 ];
 
 /// Arguments of other renderers, and what does the same here.
-const ELSEWHERE: [(&[&str], &str); 12] = [
+const FOREIGN_FLAGS: [(&[&str], &str); 12] = [
     (&["--spp"], "--samples 64"),
     (&["--output", "-o"], "--exr frame.exr"),
     (&["--width"], "--set film.width=640"),
@@ -38,26 +38,26 @@ const ELSEWHERE: [(&[&str], &str); 12] = [
 ];
 
 /// The maximum number of wrong letters in a misspelled command.
-const WRONG: usize = 2;
+const MAX_WRONG_LETTERS: usize = 2;
 
 /// Returns a message on an argument that does not exist, and what to write instead, if that is known. `commands` are
-/// those that exist. If clap accepts the words, `said` is none, but the scene may still be a misspelled command.
-pub fn meant(said: Option<&clap::Error>, words: &[OsString], commands: &[&str]) -> Option<(String, String)> {
+/// those that exist. If clap accepts the words, `complaint` is none, but the scene may still be a misspelled command.
+pub fn suggest(complaint: Option<&clap::Error>, words: &[OsString], commands: &[&str]) -> Option<(String, String)> {
     let first = || words.get(1)?.to_str().filter(|first| !first.starts_with('-'));
-    let Some(said) = said else {
+    let Some(complaint) = complaint else {
         // A name of three letters is close to half of all commands, so a short name must match more closely.
         let is_file = |name: &str| [name.into(), format!("{name}.toml")].iter().any(|name| Path::new(name).exists());
-        return first().filter(|name| !is_file(name)).and_then(|name| near_command(name, commands, name.len() / 4));
+        return first().filter(|name| !is_file(name)).and_then(|name| similar_command(name, commands, name.len() / 4));
     };
-    let given = match said.kind() {
-        ErrorKind::UnknownArgument => said.get(ContextKind::InvalidArg)?.to_string(),
+    let given = match complaint.kind() {
+        ErrorKind::UnknownArgument => complaint.get(ContextKind::InvalidArg)?.to_string(),
         _ => return None,
     };
-    if let Some((_, here)) = ELSEWHERE.iter().find(|(there, _)| there.contains(&given.as_str())) {
+    if let Some((_, here)) = FOREIGN_FLAGS.iter().find(|(there, _)| there.contains(&given.as_str())) {
         return Some((format!("there is no argument {given}"), format!("write {here}")));
     }
-    if let Some(said) = apart(&given, words).or_else(|| unset(&given, words)) {
-        return Some(said);
+    if let Some(complaint) = unjoined_list(&given, words).or_else(|| missing_set_flag(&given, words)) {
+        return Some(complaint);
     }
     let Some(first) = first().filter(|first| !first.contains('.')) else {
         return match commands.iter().find(|command| words.iter().any(|word| word == *command)) {
@@ -66,17 +66,18 @@ pub fn meant(said: Option<&clap::Error>, words: &[OsString], commands: &[&str]) 
                 let help = format!("write {whole}, and its arguments after that; {whole} --help lists them");
                 Some((format!("the command {command} comes before all other arguments"), help))
             }
-            None => out_of_place(&given),
+            None => misplaced_file(&given),
         };
     };
-    near_command(first, commands, WRONG)
+    similar_command(first, commands, MAX_WRONG_LETTERS)
 }
 
-/// Returns a message on a word, with the command that it resembles, if at most `most` letters are wrong.
-fn near_command(word: &str, commands: &[&str], most: usize) -> Option<(String, String)> {
-    let wrong = |command: &str| strsim::damerau_levenshtein(word, command);
-    let known = commands.iter().map(|&command| (command, command)).chain(FLAGS);
-    let (_, here) = known.min_by_key(|(near, _)| wrong(near)).filter(|(near, _)| wrong(near) <= most)?;
+/// Returns a message on a word, with the command that it resembles, if at most `max_distance` letters are wrong.
+fn similar_command(word: &str, commands: &[&str], max_distance: usize) -> Option<(String, String)> {
+    let distance = |command: &str| strsim::damerau_levenshtein(word, command);
+    let candidates = commands.iter().map(|&command| (command, command)).chain(FLAGS);
+    let (_, here) =
+        candidates.min_by_key(|(near, _)| distance(near)).filter(|(near, _)| distance(near) <= max_distance)?;
     Some((format!("there is no command `{word}`"), format!("did you mean render {here}?")))
 }
 
@@ -88,7 +89,7 @@ const LISTS: [(&str, &str); 3] = [
 ];
 
 /// Returns a message on a list whose entries are separate arguments, and how to join them.
-fn apart(given: &str, words: &[OsString]) -> Option<(String, String)> {
+fn unjoined_list(given: &str, words: &[OsString]) -> Option<(String, String)> {
     let (from, (flag, what)) = words.iter().enumerate().find_map(|(place, word)| {
         let list = LISTS.iter().find(|(flag, _)| word == flag)?;
         Some((place + 1, list))
@@ -104,21 +105,21 @@ fn apart(given: &str, words: &[OsString]) -> Option<(String, String)> {
 }
 
 /// Returns a message on a setting that is not a single word after its own `--set`.
-fn unset(given: &str, words: &[OsString]) -> Option<(String, String)> {
+fn missing_set_flag(given: &str, words: &[OsString]) -> Option<(String, String)> {
     let is_setting = |word: &OsString| word.to_str().is_some_and(|word| word.contains('='));
     if words.windows(2).any(|pair| pair[0] == "--set" && !is_setting(&pair[1])) {
         let message = "a setting is one word: a key, `=` and a value".to_owned();
         return Some((message, "for instance: --set film.width=320".into()));
     }
     let follows = |pair: &[OsString]| pair[1] == given && is_setting(&pair[0]) && is_setting(&pair[1]);
-    let said = || (format!("{given} needs --set before it"), format!("write --set {given}"));
-    words.windows(2).any(follows).then(said)
+    let complaint = || (format!("{given} needs --set before it"), format!("write --set {given}"));
+    words.windows(2).any(follows).then(complaint)
 }
 
 /// Returns what to write instead of an argument that a subcommand does not have. The first word is its name.
-pub fn meant_below(said: &clap::Error, words: &[OsString]) -> Option<(String, String)> {
-    let given = match said.kind() {
-        ErrorKind::UnknownArgument => said.get(ContextKind::InvalidArg)?.to_string(),
+pub fn suggest_for_subcommand(complaint: &clap::Error, words: &[OsString]) -> Option<(String, String)> {
+    let given = match complaint.kind() {
+        ErrorKind::UnknownArgument => complaint.get(ContextKind::InvalidArg)?.to_string(),
         _ => return None,
     };
     let is_image = words.first()? == "merge" && matches!(&*given, "--exr" | "--output" | "-o");
@@ -127,7 +128,7 @@ pub fn meant_below(said: &clap::Error, words: &[OsString]) -> Option<(String, St
 }
 
 /// Returns a message on a file name that belongs to no argument, and what was meant.
-fn out_of_place(given: &str) -> Option<(String, String)> {
+fn misplaced_file(given: &str) -> Option<(String, String)> {
     match given.rsplit_once('.')?.1 {
         "toml" => {
             let message = format!("one scene is rendered at a time, and {given} is another");

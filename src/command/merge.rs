@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use abbe::{Error, Parts, Result, is_checkpoint};
 use clap::Parser;
 
-use super::messages::{Listener, Protocol, print_written, speak_to, warn, warn_of_clamped};
-use super::outputs::{Folders, ends_in, spare};
+use super::messages::{Listener, Protocol, print_written, set_listener, warn, warn_of_clamped};
+use super::outputs::{Folders, check_not_input, has_extension};
 use super::problem::problem;
-use super::signals::catch_plainly;
+use super::signals::exit_on_ctrl_c;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -47,16 +47,16 @@ pub struct Query {
 /// If parts are missing, do not belong together or are damaged, or the image cannot be written.
 pub fn run(query: &Query) -> Result<()> {
     let Query { image: path, parts, delete, progress } = query;
-    speak_to(match progress {
+    set_listener(match progress {
         Some(Protocol::Openjd) => Listener::Farm,
         None => Listener::Person,
     });
-    if !ends_in(path, "exr") {
+    if !has_extension(path, "exr") {
         let message = format!("merge writes a file that ends in .exr, not {}", path.display());
         return Error::refuse(message, "for instance: render merge out.exr *.part");
     }
-    parts.iter().try_for_each(|part| spare(part, "part", path))?;
-    catch_plainly()?;
+    parts.iter().try_for_each(|part| check_not_input(part, "part", path))?;
+    exit_on_ctrl_c()?;
     let image = Parts::open(parts)?;
     let _folders = Folders::of_files(&[path])?;
     warn_of_clamped(image.format(), image.write_exr(path)?);

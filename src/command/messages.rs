@@ -27,7 +27,7 @@ pub enum Listener {
     /// A person.
     Person,
     /// A person who wants only warnings and errors.
-    Busy,
+    Quiet,
     /// A program.
     Program,
     /// A farm that runs a task of Open Job Description. Messages for people go to its log.
@@ -44,7 +44,7 @@ pub enum Protocol {
 static LISTENER: OnceLock<Listener> = OnceLock::new();
 
 /// Chooses the reader of all messages from now on. Only the first call has an effect.
-pub fn speak_to(listener: Listener) {
+pub fn set_listener(listener: Listener) {
     let _ = LISTENER.set(listener);
 }
 
@@ -53,14 +53,14 @@ pub fn listener() -> Listener {
 }
 
 /// The maximum number of mistakes in a scene that are shown.
-const MOST_SHOWN: usize = 20;
+const MAX_SHOWN_MISTAKES: usize = 20;
 
 /// Prints one plain line, or several, unless the reader wants only warnings and errors.
 pub fn say(line: &str) {
     match listener() {
         Listener::Person => print(line),
-        Listener::Busy => {}
-        Listener::Program => Event::Note { message: line }.tell(),
+        Listener::Quiet => {}
+        Listener::Program => Event::Note { message: line }.print(),
         Listener::Farm => openjd::status(line),
     }
 }
@@ -68,13 +68,13 @@ pub fn say(line: &str) {
 /// Reports that one of several frames begins.
 pub fn say_frame(frame: u32, number: u64, count: u64) {
     match listener() {
-        Listener::Program => Event::Frame { frame, number, count }.tell(),
+        Listener::Program => Event::Frame { frame, number, count }.print(),
         _ => say(&format!("frame {frame}, {number} of {count}")),
     }
 }
 
 /// Prints a line and ends the process. Holds a lock until then, so that other threads print nothing after it.
-pub fn say_last(line: &str, code: u8) -> ! {
+pub fn say_and_exit(line: &str, code: u8) -> ! {
     let _stderr = std::io::stderr().lock();
     // A thread that is sending an image to stdout holds this lock, and must not delay the end.
     let _stdout = matches!(listener(), Listener::Program | Listener::Farm).then(|| std::io::stdout().lock());
@@ -112,14 +112,14 @@ pub fn answer_lines(lines: &[String]) -> Result<()> {
 ///
 /// # Errors
 /// If the image cannot be written, or is not read to its end.
-pub fn send(image: &[u8]) -> Result<()> {
+pub fn send_image(image: &[u8]) -> Result<()> {
     let mut stdout = std::io::stdout().lock();
     let sent = stdout.write_all(image).and_then(|()| stdout.flush());
     sent.map_err(|source| Error::Io { doing: "write", path: "the image to stdout".into(), source })
 }
 
 /// Joins the cells of each line. Each column is as wide as its widest cell.
-pub fn aligned(lines: &[Vec<String>]) -> Vec<String> {
+pub fn align_columns(lines: &[Vec<String>]) -> Vec<String> {
     let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<_> = (0..lines.first().map_or(0, Vec::len)).map(width).collect();
     let line = |cells: &Vec<String>| {
@@ -132,7 +132,7 @@ pub fn aligned(lines: &[Vec<String>]) -> Vec<String> {
 /// Prints a warning, which stops nothing.
 pub fn warn(message: &str) {
     match listener() {
-        Listener::Program => Event::Warning { message }.tell(),
+        Listener::Program => Event::Warning { message }.print(),
         _ => print(&format!("warning: {message}")),
     }
 }
@@ -158,9 +158,11 @@ pub fn warn_of_exposure(image: &Image, png: &Path, exr: Option<&Path>, stops: f6
 
 /// Returns whether lines for a program were lost, and reports this on stderr.
 pub fn has_lost_lines() -> bool {
-    let lost = stdout::lost();
-    lost.iter().for_each(|why| print(&format!("error: cannot write all output to stdout: {}", reason("write", why))));
-    lost.is_some()
+    let write_error = stdout::write_error();
+    write_error
+        .iter()
+        .for_each(|why| print(&format!("error: cannot write all output to stdout: {}", reason("write", why))));
+    write_error.is_some()
 }
 
 /// Prints what went wrong, where, and what to do about it.
@@ -169,7 +171,7 @@ pub fn print_error(error: &Error) {
         openjd::fail(&summary(error));
     }
     match error {
-        _ if listener() == Listener::Program => Event::errors(error).iter().for_each(Event::tell),
+        _ if listener() == Listener::Program => Event::errors(error).iter().for_each(Event::print),
         Error::Scene(mistakes) => print_mistakes(mistakes),
         Error::Arguments { message, help } => {
             print(&format!("error: {message}"));
@@ -190,8 +192,8 @@ fn summary(error: &Error) -> String {
 
 /// Prints the mistakes in a scene, in the order of its files, and their number if there are several.
 fn print_mistakes(mistakes: &[Diagnostic]) {
-    let shown = &mistakes[..mistakes.len().min(MOST_SHOWN)];
-    print(&shown.iter().map(underlined).collect::<Vec<_>>().join("\n\n"));
+    let shown = &mistakes[..mistakes.len().min(MAX_SHOWN_MISTAKES)];
+    print(&shown.iter().map(underlined_mistake).collect::<Vec<_>>().join("\n\n"));
     let (count, more) = (mistakes.len(), mistakes.len() - shown.len());
     if count < 2 {
         return;
@@ -203,7 +205,7 @@ fn print_mistakes(mistakes: &[Diagnostic]) {
 }
 
 /// Returns a mistake with its line in the file, where the wrong part is underlined.
-fn underlined(diagnostic: &Diagnostic) -> String {
+fn underlined_mistake(diagnostic: &Diagnostic) -> String {
     let path = diagnostic.file.display().to_string();
     // An empty span, as at the end of a file, is shown as one column.
     let end = diagnostic.span.end.max(diagnostic.span.start).min(diagnostic.text.len());
@@ -255,7 +257,7 @@ pub fn answer_plan(plan: &Plan) -> Result<()> {
 /// out.
 pub fn print_plan(plan: &Plan) {
     match listener() {
-        Listener::Program => Event::plan(plan).tell(),
+        Listener::Program => Event::plan(plan).print(),
         Listener::Farm => plan.because.iter().for_each(|line| print(line)),
         _ if std::io::stderr().is_terminal() => {
             plan.because.iter().take(plan.summary_lines).for_each(|line| say(line));
@@ -268,33 +270,33 @@ pub fn print_plan(plan: &Plan) {
 /// Reports that a file was written.
 pub fn print_written(path: &Path) {
     match listener() {
-        Listener::Program => Event::Written { path }.tell(),
+        Listener::Program => Event::Written { path }.print(),
         _ => say(&format!("wrote {}", path.display())),
     }
 }
 
 /// Describes in one line the error of an image that is being rendered. `more` holds the total number of samples per
 /// pixel that will be taken and the time left, if they are known.
-pub fn so_far(error: &ImageError, more: Option<&(u32, String)>) -> String {
-    let asked = error.asked.map_or(String::new(), |asked| format!("; {} is asked for", percent(asked)));
+pub fn error_so_far(error: &ImageError, more: Option<&(u32, String)>) -> String {
+    let goal = error.asked.map_or(String::new(), |goal| format!("; {} is asked for", percent(goal)));
     let more =
         more.map_or(String::new(), |(samples, left)| format!("; about {samples} samples will be taken, {left} left"));
     let off = percent(error.at_most());
     let rare = error.noise.outlier.map_or("", |_| ", as some light is rare");
-    format!("{} samples per pixel: the image is off by at most {off}{rare}{asked}{more}", error.noise.samples)
+    format!("{} samples per pixel: the image is off by at most {off}{rare}{goal}{more}", error.noise.samples)
 }
 
 /// Prints the error of a finished image, its sources and where the noise is worst.
 fn print_error_of_image(error: &ImageError) {
     let noise = &error.noise;
-    let [at_most, expected, of_color] = [error.at_most(), noise.expected, error.model].map(percent);
+    let [at_most, expected, model_error] = [error.at_most(), noise.expected, error.model].map(percent);
     let blur = match error.blur.at_most {
         0.0 => String::new(),
         at_most => format!(", blur of photons {}", percent(at_most)),
     };
     let alpha = error.alpha.map_or(String::new(), |alpha| format!(", alpha {}", percent(alpha.at_most)));
     let rest = noise.outlier.map_or("noise", |_| "noise and rare light");
-    let parts = format!("color {of_color}{blur}{alpha}, the rest {rest}");
+    let parts = format!("color {model_error}{blur}{alpha}, the rest {rest}");
     let off = format!("at most {at_most} in 95 of 100 renders ({parts})");
     say(&format!("{} samples per pixel: the image is off by {off}", noise.samples));
     let ([x, y], worst) = (noise.worst_tile.corner, percent(noise.worst_tile.expected));
@@ -308,7 +310,7 @@ fn print_error_of_image(error: &ImageError) {
 pub fn print_report(image: &Image, plan: &Plan, took: Duration, expected: Duration) {
     let report = image.report();
     if listener() == Listener::Program {
-        Event::report(image, took, expected).tell();
+        Event::report(image, took, expected).print();
     }
     image.warnings().iter().for_each(|warning| warn(warning));
     match (image.error(), report.stopped_by) {
@@ -326,7 +328,7 @@ pub fn print_report(image: &Image, plan: &Plan, took: Duration, expected: Durati
         say(&format!("paths that were not followed to their ends: {share} of the weight"));
     }
     // If the plan has measured the effect of polarization, the bound adds nothing.
-    if report.polarization_of_tile > TOLD && plan.polarization_error.is_none() {
+    if report.polarization_of_tile > MIN_REPORTED_POLARIZATION && plan.polarization_error.is_none() {
         let is_uneven = report.polarization_of_tile > 1.05 * report.polarization;
         let [all, tile] = [report.polarization, report.polarization_of_tile].map(at_most);
         let tile = if is_uneven && tile != all { format!(", and {tile} in 16 x 16 pixels") } else { String::new() };
@@ -342,4 +344,4 @@ fn at_most(share: f64) -> String {
 }
 
 /// The share of the light that polarization may change without being reported.
-const TOLD: f64 = 0.01;
+const MIN_REPORTED_POLARIZATION: f64 = 0.01;

@@ -6,22 +6,22 @@ use super::stdout;
 
 /// Reports the share of the work that is done, from 0 to 1. Only finished work is shown as 100 %.
 pub fn progress(share: f64) {
-    tell("progress", &percent(share));
+    print("progress", &percent(share));
 }
 
 /// Reports what the task is doing.
 pub fn status(words: &str) {
-    tell("status", words);
+    print("status", words);
 }
 
 /// Reports why the task fails.
 pub fn fail(words: &str) {
-    tell("fail", words);
+    print("fail", words);
 }
 
 /// Prints a message in one line. If nobody reads it, the work goes on.
-fn tell(kind: &str, words: &str) {
-    stdout::tell(&format!("openjd_{kind}: {}", line(words)));
+fn print(kind: &str, words: &str) {
+    stdout::print(&format!("openjd_{kind}: {}", single_line(words)));
 }
 
 fn percent(share: f64) -> String {
@@ -29,7 +29,7 @@ fn percent(share: f64) -> String {
     format!("{percent:.1}")
 }
 
-fn line(words: &str) -> String {
+fn single_line(words: &str) -> String {
     words.lines().map(str::trim).collect::<Vec<_>>().join(" ")
 }
 
@@ -43,7 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn several_lines_are_said_as_one() {
-        assert_eq!(line("stopped. Go on with\n  render s.toml"), "stopped. Go on with render s.toml");
+    fn several_lines_are_joined_into_one() {
+        assert_eq!(single_line("stopped. Go on with\n  render s.toml"), "stopped. Go on with render s.toml");
     }
 }

@@ -9,17 +9,17 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use abbe::film::check_writable;
 use abbe::{Error, Result, Scene};
 
-pub fn ends_in(path: &Path, ending: &str) -> bool {
+pub fn has_extension(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
 /// Returns whether a path stands for standard input or output.
-pub fn is_standard(path: &Path) -> bool {
+pub fn is_stdio(path: &Path) -> bool {
     path == Path::new("-")
 }
 
 /// Refuses an image on standard output if that is a terminal, or if the image has spectra, which need a second file.
-pub fn check_standard(spectral: bool) -> Result<()> {
+pub fn check_stdout(spectral: bool) -> Result<()> {
     if spectral {
         let message = "spectra are written to a file beside the image, which standard output does not allow";
         return Error::refuse(message, "name the image, as in --exr out/frame.exr");
@@ -35,7 +35,7 @@ pub fn check_standard(spectral: bool) -> Result<()> {
 
 /// Refuses a picture whose name does not end in .png.
 pub fn check_png(png: Option<&Path>) -> Result<()> {
-    match png.filter(|png| !ends_in(png, "png")) {
+    match png.filter(|png| !has_extension(png, "png")) {
         Some(png) => {
             let message = format!("--png writes a file that ends in .png, not {}", png.display());
             Error::refuse(message, "for instance: --png look.png")
@@ -46,11 +46,11 @@ pub fn check_png(png: Option<&Path>) -> Result<()> {
 
 /// Refuses a text file, such as `--report frame.json`, if it has the name of an image, which it might replace, or would
 /// go to standard output.
-pub fn check_words(flag: &str, example: &str, file: Option<&Path>) -> Result<()> {
+pub fn check_text_file(flag: &str, example: &str, file: Option<&Path>) -> Result<()> {
     let refused = |message: String| Error::refuse(message, format!("for instance: {flag} {example}"));
     match file {
-        Some(file) if is_standard(file) => refused(format!("{flag} writes a file, and - is standard output")),
-        Some(file) if ["exr", "png"].iter().any(|ending| ends_in(file, ending)) => {
+        Some(file) if is_stdio(file) => refused(format!("{flag} writes a file, and - is standard output")),
+        Some(file) if ["exr", "png"].iter().any(|ending| has_extension(file, ending)) => {
             refused(format!("{flag} does not write an image, but {} has the name of one", file.display()))
         }
         _ => Ok(()),
@@ -58,7 +58,7 @@ pub fn check_words(flag: &str, example: &str, file: Option<&Path>) -> Result<()>
 }
 
 /// Refuses an output that is the input itself, under another name or through a link.
-pub fn spare(input: &Path, what: &str, output: &Path) -> Result<()> {
+pub fn check_not_input(input: &Path, what: &str, output: &Path) -> Result<()> {
     let real = |path: &Path| fs::canonicalize(path).ok();
     match real(output).filter(|output| real(input).as_ref() == Some(output)) {
         Some(_) => Error::refuse(format!("{} is the {what} itself", output.display()), "name another file"),
@@ -69,26 +69,26 @@ pub fn spare(input: &Path, what: &str, output: &Path) -> Result<()> {
 /// Refuses an output that is a file of the scene, or the same file as another output, whatever its name.
 pub fn check_outputs(scene: &Scene, outputs: &[&Path]) -> Result<()> {
     let [own, others @ ..] = &scene.files[..] else { return Ok(()) };
-    let another = |message: String| Error::refuse(message, "name another file");
-    let read: Vec<PathBuf> = others.iter().map(|other| full(other)).collect();
-    let written: Vec<PathBuf> = outputs.iter().map(|output| full(output)).collect();
+    let refused = |message: String| Error::refuse(message, "name another file");
+    let read: Vec<PathBuf> = others.iter().map(|other| canonical_path(other)).collect();
+    let written: Vec<PathBuf> = outputs.iter().map(|output| canonical_path(output)).collect();
     for (number, (output, file)) in outputs.iter().zip(&written).enumerate() {
-        spare(own, "scene", output)?;
+        check_not_input(own, "scene", output)?;
         let name = output.display();
         if read.contains(file) {
-            return another(format!("{name} is a file that the scene reads"));
+            return refused(format!("{name} is a file that the scene reads"));
         }
         // A device can be written twice.
         let is_file = !output.exists() || output.is_file();
         if is_file && written[..number].contains(file) {
-            return another(format!("{name} would be written twice"));
+            return refused(format!("{name} would be written twice"));
         }
     }
     Ok(())
 }
 
 /// Returns the unique path, without links, of a file that may not exist yet.
-fn full(path: &Path) -> PathBuf {
+fn canonical_path(path: &Path) -> PathBuf {
     let in_folder = || {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let folder = fs::canonicalize(folder).or_else(|_| std::path::absolute(folder)).ok();
@@ -106,18 +106,18 @@ pub fn check_exposure(stops: Option<f64>) -> Result<()> {
 }
 
 /// Folders that were created for files and may still be empty.
-static MADE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+static CREATED_FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-fn made() -> MutexGuard<'static, Vec<PathBuf>> {
-    MADE.lock().unwrap_or_else(PoisonError::into_inner)
+fn created_folders() -> MutexGuard<'static, Vec<PathBuf>> {
+    CREATED_FOLDERS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Removes all created folders that are empty.
 pub fn remove_empty_folders() {
-    let mut made = made();
-    made.sort_by_key(|folder| Reverse(folder.components().count()));
+    let mut created_folders = created_folders();
+    created_folders.sort_by_key(|folder| Reverse(folder.components().count()));
     // A folder that is not empty cannot be removed, and stays.
-    made.drain(..).for_each(|folder| drop(fs::remove_dir(folder)));
+    created_folders.drain(..).for_each(|folder| drop(fs::remove_dir(folder)));
 }
 
 /// Folders that are created for files, and removed in the end if they are empty.
@@ -131,7 +131,7 @@ impl Folders {
         for file in files {
             let folders = file.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty());
             let missing = folders.take_while(|folder| !folder.exists());
-            made().extend(missing.map(Path::to_owned));
+            created_folders().extend(missing.map(Path::to_owned));
             check_writable(file)?;
         }
         Ok(all)

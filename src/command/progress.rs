@@ -17,7 +17,7 @@ use super::openjd;
 /// The progress of a render, as a bar or in lines.
 pub struct Progress {
     bar: Option<ProgressBar>,
-    lines: Option<Lines>,
+    ticker: Option<Ticker>,
     counts: Arc<Counts>,
 }
 
@@ -58,19 +58,19 @@ impl Counts {
     }
 
     /// Returns the time passed and the time left, in words.
-    fn said(&self) -> String {
+    fn time_message(&self) -> String {
         times(self.start.elapsed().as_secs_f64(), self.left())
     }
 }
 
 /// The time before the first line for people. Shorter work shows no progress, except for a bar on a terminal.
-const QUIET: Duration = Duration::from_secs(10);
+const FIRST_DELAY: Duration = Duration::from_secs(10);
 /// The time between two lines for people.
 const PERIOD: Duration = Duration::from_secs(30);
 /// The time between two lines for a program.
 const TICK: Duration = Duration::from_secs(1);
 /// The time between two lines for the log of a farm.
-const LOGGED: Duration = Duration::from_secs(5);
+const LOG_PERIOD: Duration = Duration::from_secs(5);
 
 impl Progress {
     /// Begins to show the progress of a render, part of which an earlier run may have done.
@@ -85,27 +85,28 @@ impl Progress {
             is_known: AtomicBool::new(rendering.is_work_known()),
         });
         let is_shown = listener() == Listener::Person && std::io::stderr().is_terminal();
-        let new = || ProgressBar::new(work).with_position(before).with_style(style()).with_message(counts.said());
+        let new =
+            || ProgressBar::new(work).with_position(before).with_style(style()).with_message(counts.time_message());
         // Terminals that cannot move back in a line have no bar.
         let bar = is_shown.then(new).filter(|bar| !bar.is_hidden());
         BAR.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&bar);
-        let lines = bar.is_none().then(|| {
+        let ticker = bar.is_none().then(|| {
             let counts = counts.clone();
             let (first, then) = match listener() {
                 Listener::Program => (TICK, TICK),
-                Listener::Farm => (TICK, LOGGED),
-                _ => (QUIET, PERIOD),
+                Listener::Farm => (TICK, LOG_PERIOD),
+                _ => (FIRST_DELAY, PERIOD),
             };
-            Lines::new(first, then, move || speak(&counts))
+            Ticker::new(first, then, move || print(&counts))
         });
         if listener() == Listener::Farm {
             openjd::progress(share([before, work]));
         }
-        Self { bar, lines, counts }
+        Self { bar, ticker, counts }
     }
 
     /// Updates the total work.
-    pub fn expect(&self, rendering: &Rendering) {
+    pub fn update_total(&self, rendering: &Rendering) {
         let is_known = rendering.is_work_known();
         self.counts.work.store(rendering.work(), Ordering::Relaxed);
         self.counts.is_known.store(is_known, Ordering::Relaxed);
@@ -114,19 +115,19 @@ impl Progress {
 
     /// Prints a line during the render.
     pub fn say(&self, line: &str) {
-        self.aside(|| say(line));
+        self.with_hidden_bar(|| say(line));
     }
 
     /// Prints a warning during the render.
     pub fn warn(&self, message: &str) {
-        self.aside(|| warn(message));
+        self.with_hidden_bar(|| warn(message));
     }
 
-    /// Hides the bar while `speak` prints something.
-    fn aside(&self, speak: impl FnOnce()) {
+    /// Hides the bar while `print` prints something.
+    fn with_hidden_bar(&self, print: impl FnOnce()) {
         match &self.bar {
-            Some(bar) => bar.suspend(speak),
-            None => speak(),
+            Some(bar) => bar.suspend(print),
+            None => print(),
         }
     }
 
@@ -135,14 +136,14 @@ impl Progress {
         self.counts.done.fetch_add(work, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
             bar.set_length(self.counts.total());
-            bar.set_message(self.counts.said());
+            bar.set_message(self.counts.time_message());
             bar.inc(work);
         }
     }
 
     /// Returns the time left in words, if it is known.
     pub fn left(&self) -> Option<String> {
-        self.counts.left().map(spoken)
+        self.counts.left().map(in_words)
     }
 
     /// Removes the bar, prints how long the render took and how long it was expected to take, and returns the former.
@@ -150,13 +151,13 @@ impl Progress {
         let (start, work) = (self.counts.start, self.counts.work.load(Ordering::Relaxed));
         self.stop();
         let took = start.elapsed();
-        tell([work, work], took.as_secs_f64(), Some(0.0), &rendered(took, expected));
+        report([work, work], took.as_secs_f64(), Some(0.0), &final_line(took, expected));
         took
     }
 
     /// Stops the lines or removes the bar.
     fn stop(&mut self) {
-        drop(self.lines.take());
+        drop(self.ticker.take());
         if self.bar.take().is_some() {
             clear();
         }
@@ -172,7 +173,7 @@ impl Drop for Progress {
 /// Does work of unknown length, and prints from time to time that it goes on.
 pub fn during<T>(doing: &'static str, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
-    let _lines = Lines::new(QUIET, PERIOD, move || say(&going_on(doing, start.elapsed().as_secs_f64())));
+    let _ticker = Ticker::new(FIRST_DELAY, PERIOD, move || say(&ongoing_line(doing, start.elapsed().as_secs_f64())));
     work()
 }
 
@@ -191,20 +192,20 @@ fn style() -> ProgressStyle {
 }
 
 /// Prints how much of the work is done.
-fn speak(counts: &Counts) {
+fn print(counts: &Counts) {
     let (done, total, seconds) = (counts.done(), counts.total(), counts.start.elapsed().as_secs_f64());
     let left = counts.left();
-    tell([done, total], seconds, left, &line(share([done, total]), seconds, left));
+    report([done, total], seconds, left, &line(share([done, total]), seconds, left));
 }
 
 /// Reports the work done and the total work, the seconds passed and the seconds left: in numbers to a program, in words
 /// to all others.
-fn tell(parts: [u64; 2], seconds: f64, seconds_left: Option<f64>, words: &str) {
+fn report(parts: [u64; 2], seconds: f64, seconds_left: Option<f64>, words: &str) {
     let [done, total] = parts;
     match listener() {
-        Listener::Program => return Event::Progress { done, total, seconds, seconds_left }.tell(),
+        Listener::Program => return Event::Progress { done, total, seconds, seconds_left }.print(),
         Listener::Farm => openjd::progress(share(parts)),
-        Listener::Person | Listener::Busy => {}
+        Listener::Person | Listener::Quiet => {}
     }
     say(words);
 }
@@ -219,7 +220,7 @@ fn left([before, part]: [f64; 2], passed: f64) -> f64 {
 }
 
 /// Returns the line for the end of a render. The expected time of a short render means nothing, and is left out.
-fn rendered(took: Duration, expected: Duration) -> String {
+fn final_line(took: Duration, expected: Duration) -> String {
     let [took, expected] = [took, expected].map(|time| time.as_secs_f64());
     let compared = if took.max(expected) < 2.0 {
         String::new()
@@ -230,18 +231,18 @@ fn rendered(took: Duration, expected: Duration) -> String {
 }
 
 /// A thread that prints from time to time until it is dropped.
-struct Lines {
+struct Ticker {
     stop: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Lines {
-    fn new(first: Duration, then: Duration, speak: impl Fn() + Send + 'static) -> Self {
+impl Ticker {
+    fn new(first: Duration, then: Duration, print: impl Fn() + Send + 'static) -> Self {
         let (stop, stopped) = channel::<()>();
         let thread = spawn(move || {
             let mut wait = first;
             while stopped.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
-                speak();
+                print();
                 wait = then;
             }
         });
@@ -249,7 +250,7 @@ impl Lines {
     }
 }
 
-impl Drop for Lines {
+impl Drop for Ticker {
     fn drop(&mut self) {
         drop(self.stop.take());
         // If the thread has panicked, it has nothing more to print.
@@ -264,17 +265,17 @@ fn line(part: f64, passed: f64, left: Option<f64>) -> String {
 }
 
 /// Returns a line on work that has taken `passed` seconds so far.
-fn going_on(doing: &str, passed: f64) -> String {
+fn ongoing_line(doing: &str, passed: f64) -> String {
     format!("{doing}, {}", times(passed, None))
 }
 
 fn times(passed: f64, left: Option<f64>) -> String {
-    let left = left.map_or(String::new(), |left| format!(", about {} left", spoken(left)));
-    format!("{} passed{left}", spoken(passed))
+    let left = left.map_or(String::new(), |left| format!(", about {} left", in_words(left)));
+    format!("{} passed{left}", in_words(passed))
 }
 
 /// Formats a time in the unit that people would use.
-fn spoken(seconds: f64) -> String {
+fn in_words(seconds: f64) -> String {
     match seconds {
         seconds if seconds < 99.5 => format!("{seconds:.0} s"),
         seconds if seconds < 99.5 * 60.0 => format!("{:.0} min", seconds / 60.0),
@@ -294,24 +295,25 @@ mod tests {
         assert_eq!(after([0.0, 0.999], 3000.0), "99 %, 50 min passed, about 3 s left");
         assert_eq!(after([0.0, 0.1], 7200.0), "10 %, 2.0 h passed, about 18.0 h left");
         assert_eq!(after([0.5, 0.6], 10.0), "60 %, 10 s passed, about 40 s left");
-        assert_eq!(going_on("planning", 40.0), "planning, 40 s passed");
+        assert_eq!(ongoing_line("planning", 40.0), "planning, 40 s passed");
     }
 
     #[test]
-    fn a_long_render_speaks_again_and_again_even_where_no_work_is_done_and_a_short_one_never() {
-        let (tell, told) = channel();
-        let lines = Lines::new(Duration::from_millis(1), Duration::from_millis(1), move || tell.send(()).unwrap_or(()));
+    fn a_long_render_prints_lines_even_while_no_work_is_done_and_a_short_one_none() {
+        let (report, told) = channel();
+        let ticker =
+            Ticker::new(Duration::from_millis(1), Duration::from_millis(1), move || report.send(()).unwrap_or(()));
         assert_eq!(told.iter().take(5).count(), 5);
-        drop(lines);
+        drop(ticker);
         // This ends because the sender was dropped with the thread.
         told.iter().for_each(drop);
-        let (tell, told) = channel();
-        drop(Lines::new(Duration::from_secs(3600), PERIOD, move || tell.send(()).unwrap_or(())));
+        let (report, told) = channel();
+        drop(Ticker::new(Duration::from_secs(3600), PERIOD, move || report.send(()).unwrap_or(())));
         assert_eq!(told.iter().count(), 0);
     }
 
     #[test]
     fn there_is_a_line_a_minute_at_least() {
-        assert!(QUIET.max(PERIOD) <= Duration::from_secs(60));
+        assert!(FIRST_DELAY.max(PERIOD) <= Duration::from_secs(60));
     }
 }

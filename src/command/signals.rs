@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use abbe::film::remove_unfinished;
 use abbe::{Error, Result};
 
-use super::messages::say_last;
+use super::messages::say_and_exit;
 use super::outputs::remove_empty_folders;
 use super::progress;
 
@@ -26,7 +26,7 @@ const NOT_ALL_WRITTEN: &str = "stopped before all files of this image were writt
 pub const STOPPED_CODE: u8 = 130;
 /// Further signals within this time after the first one are copies of it: `timeout` sends one to the command, and
 /// another to its whole process group.
-const ECHO: Duration = Duration::from_millis(500);
+const ECHO_TIME: Duration = Duration::from_millis(500);
 
 /// Returns whether the command was told to stop.
 pub fn is_stopped() -> bool {
@@ -54,17 +54,17 @@ pub fn note_written() {
 ///
 /// # Errors
 /// If Ctrl-C cannot be caught.
-pub fn catch(stops_at_once: bool) -> Result<()> {
+pub fn catch_ctrl_c(stops_at_once: bool) -> Result<()> {
     let mut first = None;
-    handle(move || {
+    install_handler(move || {
         let has_begun = HAS_BEGUN.load(Ordering::Relaxed);
-        let leave_nothing = || {
+        let clean_up = || {
             progress::clear();
-            leave_no_rest();
+            remove_leftovers();
         };
         if stops_at_once || !has_begun {
-            leave_nothing();
-            say_last(
+            clean_up();
+            say_and_exit(
                 match (has_begun, HAS_WRITTEN.load(Ordering::Relaxed)) {
                     (false, _) => NOTHING_DONE,
                     (true, false) => NOTHING_KEPT,
@@ -73,16 +73,16 @@ pub fn catch(stops_at_once: bool) -> Result<()> {
                 STOPPED_CODE,
             );
         }
-        let is_echo = first.get_or_insert_with(Instant::now).elapsed() < ECHO;
+        let is_echo = first.get_or_insert_with(Instant::now).elapsed() < ECHO_TIME;
         if STOPPED.swap(true, Ordering::Relaxed) && !is_echo {
-            leave_nothing();
+            clean_up();
             std::process::exit(STOPPED_CODE.into());
         }
     })
 }
 
 /// Removes unfinished files, and the folders that were created only for them.
-fn leave_no_rest() {
+fn remove_leftovers() {
     remove_unfinished();
     remove_empty_folders();
 }
@@ -91,46 +91,46 @@ fn leave_no_rest() {
 ///
 /// # Errors
 /// If Ctrl-C cannot be caught.
-pub fn catch_plainly() -> Result<()> {
-    handle(|| {
-        leave_no_rest();
-        say_last("stopped", STOPPED_CODE);
+pub fn exit_on_ctrl_c() -> Result<()> {
+    install_handler(|| {
+        remove_leftovers();
+        say_and_exit("stopped", STOPPED_CODE);
     })
 }
 
 /// Installs a handler for Ctrl-C. SIGHUP, sent at the end of the terminal, stays ignored if it was, as under `nohup`: a
 /// handler would end a command that is meant to outlive its terminal.
-fn handle(stop: impl FnMut() + Send + 'static) -> Result<()> {
-    let was_ignored = ignore_end_of_terminal();
-    let caught = ctrlc::set_handler(stop);
+fn install_handler(stop: impl FnMut() + Send + 'static) -> Result<()> {
+    let was_ignored = ignore_hangup();
+    let installed = ctrlc::set_handler(stop);
     if was_ignored {
-        ignore_end_of_terminal();
+        ignore_hangup();
     }
-    caught.map_err(|error| Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None })
+    installed.map_err(|error| Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None })
 }
 
 /// Ignores SIGHUP. Returns whether it was ignored before.
 #[cfg(unix)]
 #[allow(unsafe_code)]
-fn ignore_end_of_terminal() -> bool {
+fn ignore_hangup() -> bool {
     // SAFETY: the signal and its action are valid constants, and the action runs no code of ours.
     unsafe { libc::signal(libc::SIGHUP, libc::SIG_IGN) == libc::SIG_IGN }
 }
 
 /// Other systems have no such signal.
 #[cfg(not(unix))]
-fn ignore_end_of_terminal() -> bool {
+fn ignore_hangup() -> bool {
     false
 }
 
 /// Ignores SIGXFSZ, so that a file larger than `ulimit -f` allows is an ordinary write error.
 #[cfg(unix)]
 #[allow(unsafe_code)]
-pub fn report_large_files() {
+pub fn ignore_file_size_signal() {
     // SAFETY: the signal and its action are valid constants, and the action runs no code of ours.
     unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
 }
 
 /// Other systems have no such signal.
 #[cfg(not(unix))]
-pub fn report_large_files() {}
+pub fn ignore_file_size_signal() {}

@@ -17,19 +17,19 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::file::{cannot_read, cannot_write, replace_by};
+use super::file::{cannot_read, cannot_write, replace_with};
 use crate::error::{Error, Result};
 
 /// The first bytes of a file, which identify its kind.
 pub type Kind = [u8; 8];
 
 /// The bytes of a block's length, and of its length and checksum.
-const LENGTH: usize = 8;
-const HEAD: usize = 12;
+const LENGTH_BYTES: usize = 8;
+const HEAD_BYTES: usize = 12;
 
 /// Writes a file of blocks, one block after another.
 pub struct BlockWriter<'a> {
-    to: &'a mut dyn Write,
+    output: &'a mut dyn Write,
     /// The block under construction.
     bytes: Vec<u8>,
 }
@@ -39,14 +39,14 @@ pub struct BlockWriter<'a> {
 /// # Errors
 /// If the file cannot be written. An existing file is then untouched.
 pub fn write_blocks(path: &Path, kind: Kind, write: &dyn Fn(&mut BlockWriter) -> io::Result<()>) -> Result<()> {
-    let written = |to: &mut dyn Write| {
-        to.write_all(&kind)?;
-        let mut blocks = BlockWriter { to, bytes: Vec::new() };
+    let written = |output: &mut dyn Write| {
+        output.write_all(&kind)?;
+        let mut blocks = BlockWriter { output, bytes: Vec::new() };
         write(&mut blocks)?;
-        blocks.bytes.resize(HEAD, 0);
-        blocks.put()
+        blocks.bytes.resize(HEAD_BYTES, 0);
+        blocks.flush_block()
     };
-    replace_by(path, |place| written(place).map_err(|source| cannot_write(path, source)))
+    replace_with(path, |place| written(place).map_err(|source| cannot_write(path, source)))
 }
 
 impl BlockWriter<'_> {
@@ -56,24 +56,24 @@ impl BlockWriter<'_> {
     /// If it cannot be written.
     pub fn block(&mut self, content: &impl Serialize) -> io::Result<()> {
         let mut bytes = std::mem::take(&mut self.bytes);
-        bytes.resize(HEAD, 0);
+        bytes.resize(HEAD_BYTES, 0);
         self.bytes = postcard::to_extend(content, bytes).map_err(io::Error::other)?;
-        self.put()
+        self.flush_block()
     }
 
     /// Writes out the block under construction.
-    fn put(&mut self) -> io::Result<()> {
-        let (head, content) = self.bytes.split_at_mut(HEAD);
+    fn flush_block(&mut self) -> io::Result<()> {
+        let (head, content) = self.bytes.split_at_mut(HEAD_BYTES);
         let length = (content.len() as u64).to_le_bytes();
-        head[..LENGTH].copy_from_slice(&length);
-        head[LENGTH..].copy_from_slice(&checksum(length, content).to_le_bytes());
-        self.to.write_all(&self.bytes)?;
+        head[..LENGTH_BYTES].copy_from_slice(&length);
+        head[LENGTH_BYTES..].copy_from_slice(&checksum(length, content).to_le_bytes());
+        self.output.write_all(&self.bytes)?;
         self.bytes.clear();
         Ok(())
     }
 }
 
-fn checksum(length: [u8; LENGTH], content: &[u8]) -> u32 {
+fn checksum(length: [u8; LENGTH_BYTES], content: &[u8]) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     hasher.update(&length);
     hasher.update(content);
@@ -150,10 +150,10 @@ impl BlockReader {
     }
 
     fn content(&mut self) -> Result<Vec<u8>> {
-        let mut head = [0; HEAD];
+        let mut head = [0; HEAD_BYTES];
         self.fill(&mut head)?;
-        let length: [u8; LENGTH] = std::array::from_fn(|i| head[i]);
-        let sum: [u8; HEAD - LENGTH] = std::array::from_fn(|i| head[LENGTH + i]);
+        let length: [u8; LENGTH_BYTES] = std::array::from_fn(|i| head[i]);
+        let sum: [u8; HEAD_BYTES - LENGTH_BYTES] = std::array::from_fn(|i| head[LENGTH_BYTES + i]);
         let bytes = u64::from_le_bytes(length);
         // A corrupted length must not exhaust the memory.
         if bytes > self.left {
@@ -186,19 +186,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_block_of_another_content_is_told_from_one_that_is_damaged() {
+    fn a_block_with_other_content_is_distinguished_from_a_damaged_one() {
         let folder = tempfile::tempdir().expect("a folder");
         let (path, kind) = (folder.path().join("a.part"), *b"AbbeTest");
         write_blocks(&path, kind, &|blocks| blocks.block(&u32::MAX)).expect("it can be written");
         let read =
             || BlockReader::open(&path, kind).expect("it can be read").expect("it is of this kind").block::<u8>();
-        let told = |error: Error| error.to_string();
-        let another = told(read().expect_err("it is no byte"));
+        let text_of = |error: Error| error.to_string();
+        let another = text_of(read().expect_err("it is no byte"));
         assert!(another.contains("it was written by another build of the renderer"), "{another}");
         let mut bytes = std::fs::read(&path).expect("it is there");
-        bytes[kind.len() + HEAD] ^= 1;
+        bytes[kind.len() + HEAD_BYTES] ^= 1;
         std::fs::write(&path, bytes).expect("it can be written");
-        let damaged = told(read().expect_err("a bit is wrong"));
+        let damaged = text_of(read().expect_err("a bit is wrong"));
         assert!(damaged.contains("it is damaged or truncated"), "{damaged}");
     }
 }

@@ -10,9 +10,9 @@ use exr::meta::attribute::{Chromaticities, EnvironmentMap};
 use exr::prelude::{AttributeValue, ImageAttributes, IntegerBounds, LayerAttributes, Text, Vec2};
 use serde::{Deserialize, Serialize};
 
-use super::exr_blocks::{self, CLAMPED, ScanLinePart};
+use super::exr_blocks::{self, CLAMPED_KEY, ScanLinePart};
 use super::exr_column::{Column, Of};
-use super::file::replace_by;
+use super::file::replace_with;
 use super::format::{Compression, Format, Precision};
 use super::image::Film;
 use super::rows::Rows;
@@ -123,7 +123,7 @@ pub struct Heading<'a> {
 /// # Errors
 /// If rows cannot be read, or the file cannot be encoded or written. An existing file is then untouched.
 pub fn write_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<u64> {
-    replace_by(path, |place| exr_blocks::write(&parts(heading), rows, place, path))
+    replace_with(path, |output| exr_blocks::write(&parts(heading), rows, output, path))
 }
 
 /// Encodes the file that [`write_exr`] writes. Returns its bytes and how many values were clamped; `path` names the
@@ -155,13 +155,14 @@ fn parts(heading: Heading) -> Vec<ScanLinePart> {
     }
     if half {
         // A placeholder: the count is known once the pixels are written.
-        attributes.other.insert(Text::from(CLAMPED), AttributeValue::I32(0));
+        attributes.other.insert(Text::from(CLAMPED_KEY), AttributeValue::I32(0));
     }
     let mut shared = ImageAttributes::new(display_window(film));
     // Chromaticities would apply to all parts, including those without colors.
     shared.chromaticities = (!format.multipart).then(|| chromaticities(film));
     let part = |(number, group): (usize, Group)| {
-        let own = if number == 0 { attributes.clone() } else { of_other_part(film, &attributes, group.has_colors) };
+        let own =
+            if number == 0 { attributes.clone() } else { other_part_attributes(film, &attributes, group.has_colors) };
         let name = format.multipart.then(|| Text::new_or_panic(group.name));
         let packed = if group.is_data && format.compression.is_lossy() { Compression::Zip } else { format.compression };
         ScanLinePart::new(film, group.columns, packed, shared.clone(), LayerAttributes { layer_name: name, ..own })
@@ -227,7 +228,7 @@ fn utf8(text: &str) -> Text {
 
 /// Returns the attributes of a part other than the first: its position, its view and the meaning of its numbers. All
 /// colors of a file share one color space.
-fn of_other_part(film: &Film, attributes: &LayerAttributes, has_colors: bool) -> LayerAttributes {
+fn other_part_attributes(film: &Film, attributes: &LayerAttributes, has_colors: bool) -> LayerAttributes {
     let mut own = LayerAttributes {
         layer_position: attributes.layer_position,
         screen_window_width: attributes.screen_window_width,

@@ -27,8 +27,8 @@ pub(crate) fn primaries(found: Chromaticities) -> Primaries {
 /// attributes that describe the pixel storage, and the camera matrix: these are reported separately.
 pub(super) fn attributes(part: &LayerAttributes, shared: &HashMap<Text, AttributeValue>) -> Vec<(String, String)> {
     let mut found: Vec<(String, String)> =
-        part.other.iter().chain(shared).map(|(key, value)| (text(key), words(value))).collect();
-    let mut put = |key: &str, value: Option<String>| found.extend(value.map(|value| (key.to_owned(), value)));
+        part.other.iter().chain(shared).map(|(key, value)| (text(key), value_text(value))).collect();
+    let mut add = |key: &str, value: Option<String>| found.extend(value.map(|value| (key.to_owned(), value)));
     for (key, value) in [
         ("software", &part.software_name),
         ("owner", &part.owner),
@@ -39,7 +39,7 @@ pub(super) fn attributes(part: &LayerAttributes, shared: &HashMap<Text, Attribut
         ("renderingTransform", &part.rendering_transform_name),
         ("lookModTransform", &part.look_modification_transform_name),
     ] {
-        put(key, value.as_ref().map(text));
+        add(key, value.as_ref().map(text));
     }
     for (key, value) in [
         ("whiteLuminance", part.white_luminance),
@@ -57,25 +57,25 @@ pub(super) fn attributes(part: &LayerAttributes, shared: &HashMap<Text, Attribut
         ("fieldOfViewHorizontal", part.horizontal_field_of_view),
         ("fieldOfViewVertical", part.vertical_field_of_view),
     ] {
-        put(key, value.map(|value| value.to_string()));
+        add(key, value.map(|value| value.to_string()));
     }
-    put("adoptedNeutral", part.adopted_neutral.map(|at| numbers(&[at.x(), at.y()])));
-    put("framesPerSecond", part.frames_per_second.map(|(up, down)| format!("{up}/{down}")));
-    put("worldToNDC", part.world_to_normalized_device.map(|matrix| numbers(&matrix)));
-    put("multiView", part.multi_view_names.as_ref().map(|names| listed(names)));
-    put("preview", part.preview.as_ref().map(|_| "a small picture".into()));
+    add("adoptedNeutral", part.adopted_neutral.map(|at| numbers(&[at.x(), at.y()])));
+    add("framesPerSecond", part.frames_per_second.map(|(up, down)| format!("{up}/{down}")));
+    add("worldToNDC", part.world_to_normalized_device.map(|matrix| numbers(&matrix)));
+    add("multiView", part.multi_view_names.as_ref().map(|names| join_texts(names)));
+    add("preview", part.preview.as_ref().map(|_| "a small picture".into()));
     let sphere = part.environment_map.map(|map| match map {
         EnvironmentMap::LatitudeLongitude => "the full sphere, by longitude and latitude",
         EnvironmentMap::Cube => "the six faces of a cube",
     });
-    put("envmap", sphere.map(str::to_owned));
+    add("envmap", sphere.map(str::to_owned));
     // A missing attribute is read as the default value, which is not worth reporting.
     if part.screen_window_width != 1.0 || part.world_to_camera.is_some() {
-        put("screenWindowWidth", Some(part.screen_window_width.to_string()));
+        add("screenWindowWidth", Some(part.screen_window_width.to_string()));
     }
     let center = [part.screen_window_center.x(), part.screen_window_center.y()];
     if center != [0.0; 2] {
-        put("screenWindowCenter", Some(numbers(&center)));
+        add("screenWindowCenter", Some(numbers(&center)));
     }
     found.sort();
     found
@@ -85,14 +85,14 @@ fn numbers(numbers: &[f32]) -> String {
     numbers.iter().map(f32::to_string).collect::<Vec<_>>().join(" ")
 }
 
-fn listed(texts: &[Text]) -> String {
+fn join_texts(texts: &[Text]) -> String {
     texts.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
-fn words(value: &AttributeValue) -> String {
+fn value_text(value: &AttributeValue) -> String {
     match value {
         AttributeValue::Text(value) => text(value),
-        AttributeValue::TextVector(values) => listed(values),
+        AttributeValue::TextVector(values) => join_texts(values),
         AttributeValue::F64(value) => value.to_string(),
         AttributeValue::F32(value) => value.to_string(),
         AttributeValue::I32(value) => value.to_string(),

@@ -15,7 +15,7 @@ use zlib_rs::{DeflateConfig, ReturnCode, compress_bound, compress_slice};
 
 use super::exr_column::Column;
 use super::exr_head;
-use super::file::{Place, cannot_write};
+use super::file::{Destination, cannot_write};
 use super::format::Compression;
 use super::image::Film;
 use super::rows::Rows;
@@ -23,16 +23,16 @@ use crate::error::{Error, Result};
 
 /// The deflate level. Its files are as large as those of level 4 of the EXR library, in half of the time
 /// (`benches/README.md`).
-const LEVEL: i32 = 3;
+const DEFLATE_LEVEL: i32 = 3;
 /// The number of blocks that each thread compresses before all are written. Only these blocks are in memory. If blocks
 /// have fewer than [`BLOCK_ROWS`] rows, there are proportionally more of them.
-const BLOCKS_AT_A_TIME: usize = 4;
+const BLOCKS_PER_THREAD: usize = 4;
 const BLOCK_ROWS: usize = 16;
 /// The bytes of an offset in the file.
-const OFFSET: usize = 8;
+const OFFSET_BYTES: usize = 8;
 
 /// The attribute that counts the values that were clamped to the range of 16 bits.
-pub(super) const CLAMPED: &str = "render/clamped";
+pub(super) const CLAMPED_KEY: &str = "render/clamped";
 
 /// A part of a scan-line file: its channels in the order of their names, and its header.
 pub(super) struct ScanLinePart {
@@ -104,40 +104,45 @@ struct Block {
 ///
 /// # Errors
 /// If rows cannot be read, or the file cannot be encoded or written; `path` names the file in errors.
-pub(super) fn write(parts: &[ScanLinePart], rows: &mut dyn Rows, place: &mut dyn Place, path: &Path) -> Result<u64> {
+pub(super) fn write(
+    parts: &[ScanLinePart],
+    rows: &mut dyn Rows,
+    output: &mut dyn Destination,
+    path: &Path,
+) -> Result<u64> {
     let encode = |error: exr::error::Error| Error::Encode { path: path.to_owned(), message: error.to_string() };
     let failed = |source| cannot_write(path, source);
     let headers: Vec<Header> = parts.iter().map(|part| part.header.clone()).collect();
     let mut head = exr_head::encode(&headers).map_err(encode)?;
     let mut offsets: Vec<Vec<u64>> = vec![Vec::new(); parts.len()];
-    let offset_bytes = OFFSET * headers.iter().map(|header| header.chunk_count).sum::<usize>();
-    place.write_all(&head).and_then(|()| place.write_all(&vec![0; offset_bytes])).map_err(failed)?;
+    let offset_bytes = OFFSET_BYTES * headers.iter().map(|header| header.chunk_count).sum::<usize>();
+    output.write_all(&head).and_then(|()| output.write_all(&vec![0; offset_bytes])).map_err(failed)?;
     let (mut end, mut clamped, mut bytes) = ((head.len() + offset_bytes) as u64, 0, Vec::new());
-    let low = (BLOCK_ROWS / tallest_block(parts) as usize).max(1);
-    let at_a_time = BLOCKS_AT_A_TIME * low * rayon::current_num_threads();
+    let batch_scale = (BLOCK_ROWS / tallest_block(parts) as usize).max(1);
+    let batch_size = BLOCKS_PER_THREAD * batch_scale * rayon::current_num_threads();
     for strip in strips(parts, rows.at_once()) {
         let blocks = blocks(parts, &strip);
         let (film, first) = rows.rows(strip.clone())?;
         let pack = |block: &Block| {
-            let below = (block.rows.start - strip.start) as usize * film.width as usize;
-            pack(parts, &headers, block, film, first + below)
+            let skipped_pixels = (block.rows.start - strip.start) as usize * film.width as usize;
+            pack(parts, &headers, block, film, first + skipped_pixels)
         };
-        for some in blocks.chunks(at_a_time) {
-            let packed: Vec<_> = some.par_iter().map(pack).collect();
+        for batch in blocks.chunks(batch_size) {
+            let packed: Vec<_> = batch.par_iter().map(pack).collect();
             bytes.clear();
-            for (block, packed) in some.iter().zip(packed) {
+            for (block, packed) in batch.iter().zip(packed) {
                 let Packed { chunk, clamped: more } = packed.map_err(encode)?;
                 offsets[block.part].push(end + bytes.len() as u64);
                 chunk.write(&mut bytes, parts.len()).map_err(encode)?;
                 clamped += more;
             }
-            place.write_all(&bytes).map_err(failed)?;
+            output.write_all(&bytes).map_err(failed)?;
             end += bytes.len() as u64;
         }
     }
-    exr_head::set_count(&mut head, CLAMPED, clamped);
+    exr_head::set_count(&mut head, CLAMPED_KEY, clamped);
     head.extend(offsets.into_iter().flatten().flat_map(u64::to_le_bytes));
-    place.rewind().and_then(|()| place.write_all(&head)).map_err(failed)?;
+    output.rewind().and_then(|()| output.write_all(&head)).map_err(failed)?;
     Ok(clamped)
 }
 
@@ -157,12 +162,12 @@ fn strips(parts: &[ScanLinePart], at_once: Option<u32>) -> impl Iterator<Item = 
 /// Lists the blocks of a strip from the top. Blocks that start at the same row follow the order of their parts.
 fn blocks(parts: &[ScanLinePart], strip: &Range<u32>) -> Vec<Block> {
     let end = strip.end;
-    let of_part = |(number, part): (usize, &ScanLinePart)| {
+    let part_blocks = |(number, part): (usize, &ScanLinePart)| {
         let each = part.block_rows();
         let rows = strip.clone().step_by(each as usize);
         rows.map(move |first| Block { part: number, rows: first..end.min(first.saturating_add(each)) })
     };
-    let mut blocks: Vec<Block> = parts.iter().enumerate().flat_map(of_part).collect();
+    let mut blocks: Vec<Block> = parts.iter().enumerate().flat_map(part_blocks).collect();
     blocks.sort_by_key(|block| (block.rows.start, block.part));
     blocks
 }
@@ -204,7 +209,7 @@ fn chunk(headers: &[Header], block: UncompressedBlock) -> exr::error::Result<Chu
         return block.compress_to_chunk(headers);
     }
     let y_coordinate = header.own_attributes.layer_position.y() + block.index.pixel_position.y() as i32;
-    let compressed_pixels_le = deflated(block.data);
+    let compressed_pixels_le = deflate(block.data);
     let compressed_block = CompressedBlock::ScanLine(CompressedScanLineBlock { y_coordinate, compressed_pixels_le });
     Ok(Chunk { layer_index: block.index.layer, compressed_block })
 }
@@ -213,17 +218,17 @@ fn chunk(headers: &[Header], block: UncompressedBlock) -> exr::error::Result<Chu
 /// previous one plus 128, and applies zlib. Returns the bytes unchanged if this does not shrink them; readers recognize
 /// that by the length (OpenEXR, *File Layout*; Kainz & Bogart, *Technical Introduction to OpenEXR*, "Data
 /// Compression").
-fn deflated(bytes: Vec<u8>) -> Vec<u8> {
-    let mut apart: Vec<u8> = Vec::with_capacity(bytes.len());
-    apart.extend(bytes.iter().step_by(2));
-    apart.extend(bytes.iter().skip(1).step_by(2));
-    let mut before = apart.first().copied().unwrap_or_default();
-    for byte in apart.iter_mut().skip(1) {
-        let it = std::mem::replace(byte, byte.wrapping_sub(before).wrapping_add(128));
-        before = it;
+fn deflate(bytes: Vec<u8>) -> Vec<u8> {
+    let mut separated: Vec<u8> = Vec::with_capacity(bytes.len());
+    separated.extend(bytes.iter().step_by(2));
+    separated.extend(bytes.iter().skip(1).step_by(2));
+    let mut before = separated.first().copied().unwrap_or_default();
+    for byte in separated.iter_mut().skip(1) {
+        let original = std::mem::replace(byte, byte.wrapping_sub(before).wrapping_add(128));
+        before = original;
     }
-    let mut packed = vec![0; compress_bound(apart.len())];
-    let (written, code) = compress_slice(&mut packed, &apart, DeflateConfig::new(LEVEL));
+    let mut packed = vec![0; compress_bound(separated.len())];
+    let (written, code) = compress_slice(&mut packed, &separated, DeflateConfig::new(DEFLATE_LEVEL));
     let length = written.len();
     if code != ReturnCode::Ok || length >= bytes.len() {
         return bytes;
@@ -239,14 +244,14 @@ mod tests {
     use zlib_rs::{InflateConfig, decompress_slice};
 
     /// Decompresses bytes, following the description of the file layout.
-    fn inflated(packed: &[u8], length: usize) -> Vec<u8> {
-        let mut apart = vec![0; length];
-        let (read, code) = decompress_slice(&mut apart, packed, InflateConfig::default());
+    fn inflate(packed: &[u8], length: usize) -> Vec<u8> {
+        let mut separated = vec![0; length];
+        let (read, code) = decompress_slice(&mut separated, packed, InflateConfig::default());
         assert_eq!((read.len(), code), (length, ReturnCode::Ok));
         for i in 1..length {
-            apart[i] = apart[i - 1].wrapping_add(apart[i]).wrapping_sub(128);
+            separated[i] = separated[i - 1].wrapping_add(separated[i]).wrapping_sub(128);
         }
-        let (even, odd) = apart.split_at(length.div_ceil(2));
+        let (even, odd) = separated.split_at(length.div_ceil(2));
         (0..length).map(|i| if i % 2 == 0 { even[i / 2] } else { odd[i / 2] }).collect()
     }
 
@@ -254,9 +259,9 @@ mod tests {
     fn what_is_packed_comes_back_and_what_would_grow_stays() {
         for length in [2, 3, 100, 101, 70_000] {
             let smooth: Vec<u8> = (0..length).map(|i| (i / 7 % 251) as u8).collect();
-            let packed = deflated(smooth.clone());
+            let packed = deflate(smooth.clone());
             assert!(packed.len() < length || (packed == smooth && length < 20), "{length}");
-            assert!(packed == smooth || inflated(&packed, length) == smooth, "{length}");
+            assert!(packed == smooth || inflate(&packed, length) == smooth, "{length}");
         }
         // Random bytes cannot be compressed.
         let mut state = 1_u64;
@@ -265,7 +270,7 @@ mod tests {
             (state >> 56) as u8
         };
         let noise: Vec<u8> = (0..10_000).map(|_| random()).collect();
-        assert_eq!(deflated(noise.clone()), noise);
-        assert_eq!(deflated(Vec::new()), Vec::<u8>::new());
+        assert_eq!(deflate(noise.clone()), noise);
+        assert_eq!(deflate(Vec::new()), Vec::<u8>::new());
     }
 }

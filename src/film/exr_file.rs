@@ -16,15 +16,15 @@ use super::exr_attributes::{attributes, primaries, text};
 use super::exr_layer::{BEAUTY, ExrLayer};
 use super::exr_part::{Channel, Part, PixelBounds};
 use super::file::cannot_read;
-use super::guard::{MOST_PIXELS, claims_fit, fits, guarded, too_large};
-use crate::error::{Error, Result, ends_in, nearest, nearest_file};
+use super::guard::{MOST_PIXELS, catch_panics, check_claimed_sizes, fits, too_large};
+use crate::error::{Error, Result, has_extension, nearest, nearest_file};
 use crate::spectrum::Primaries;
 
 /// The largest file size that is read: 4 GiB.
 const MOST_BYTES: u64 = 1 << 32;
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// The signatures of other image formats.
-const PICTURES: [(&[u8], &str); 3] = [(b"\x89PNG", "PNG"), (b"\xff\xd8\xff", "JPEG"), (b"#?", "Radiance picture")];
+const OTHER_FORMATS: [(&[u8], &str); 3] = [(b"\x89PNG", "PNG"), (b"\xff\xd8\xff", "JPEG"), (b"#?", "Radiance picture")];
 
 /// An OpenEXR file, with all its parts.
 #[derive(Debug)]
@@ -57,23 +57,23 @@ impl ExrFile {
     /// # Errors
     /// [`Error::Decode`] if they are no OpenEXR file, incomplete, or of an unsupported kind.
     pub fn of_bytes(bytes: &[u8], path: &Path) -> Result<Self> {
-        match guarded(|| Ok::<_, String>(Self::decode(bytes))) {
+        match catch_panics(|| Ok::<_, String>(Self::decode(bytes))) {
             Ok(Ok(file)) => Ok(file),
             Ok(Err(exr::error::Error::NotSupported(what))) => {
                 let message = format!("OpenEXR images of this kind are not supported: {what}");
                 Err(Error::Decode { path: path.to_owned(), message })
             }
             Ok(Err(error)) => Err(decode_error(path, &error.to_string())),
-            Err(said) => Err(decode_error(path, &said)),
+            Err(reason) => Err(decode_error(path, &reason)),
         }
     }
 
     fn decode(bytes: &[u8]) -> exr::error::Result<Self> {
         let headers = MetaData::read_from_buffered(Cursor::new(bytes), false)?.headers;
-        if let Some(said) = unread(&headers) {
-            return Err(exr::error::Error::NotSupported(said.into()));
+        if let Some(reason) = why_unread(&headers) {
+            return Err(exr::error::Error::NotSupported(reason.into()));
         }
-        let invalid = |said: String| exr::error::Error::Invalid(said.into());
+        let invalid = |reason: String| exr::error::Error::Invalid(reason.into());
         let mut all = 0u64;
         for header in &headers {
             let [width, height] = [header.layer_size.width(), header.layer_size.height()];
@@ -81,14 +81,14 @@ impl ExrFile {
                 .saturating_add((width as u64 * height as u64).saturating_mul(header.channels.bytes_per_pixel as u64));
             fits(width, height, all, bytes).map_err(invalid)?;
         }
-        claims_fit(bytes)?;
+        check_claimed_sizes(bytes)?;
         let reader = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
         let image = reader.non_parallel().from_buffered(Cursor::new(bytes))?;
         let values = image.layer_data.into_iter().map(|layer| {
             let channels = layer.channel_data.list.into_iter();
             channels.map(|channel| channel.sample_data).collect()
         });
-        Ok(Self::of_headers(&headers, values, bytes.len()))
+        Ok(Self::from_headers(&headers, values, bytes.len()))
     }
 
     /// Reads the headers of a file of an unsupported kind, and returns them with the reason why its pixels are not
@@ -98,21 +98,21 @@ impl ExrFile {
     /// The errors of [`read`](Self::read).
     pub fn outline(path: &Path) -> Result<Option<(Self, String)>> {
         let bytes = bytes(path)?;
-        let described = guarded(|| MetaData::read_from_buffered(Cursor::new(&bytes), false));
-        let headers = described.map_err(|said| decode_error(path, &said))?.headers;
-        let Some(why) = unread(&headers) else { return Ok(None) };
-        let none = |channel: &ChannelDescription| match channel.sample_type {
+        let described = catch_panics(|| MetaData::read_from_buffered(Cursor::new(&bytes), false));
+        let headers = described.map_err(|reason| decode_error(path, &reason))?.headers;
+        let Some(why) = why_unread(&headers) else { return Ok(None) };
+        let no_samples = |channel: &ChannelDescription| match channel.sample_type {
             SampleType::F16 => FlatSamples::F16(Vec::new()),
             SampleType::F32 => FlatSamples::F32(Vec::new()),
             SampleType::U32 => FlatSamples::U32(Vec::new()),
         };
-        let values = headers.iter().map(|header| header.channels.list.iter().map(none).collect());
-        Ok(Some((Self::of_headers(&headers, values, bytes.len()), why)))
+        let values = headers.iter().map(|header| header.channels.list.iter().map(no_samples).collect());
+        Ok(Some((Self::from_headers(&headers, values, bytes.len()), why)))
     }
 
     /// Assembles a file from the headers of its parts and the values of all their channels.
-    fn of_headers(headers: &[Header], values: impl Iterator<Item = Vec<FlatSamples>>, length: usize) -> Self {
-        let (shared, mut taken) = (&headers[0].shared_attributes, BTreeSet::new());
+    fn from_headers(headers: &[Header], values: impl Iterator<Item = Vec<FlatSamples>>, length: usize) -> Self {
+        let (shared, mut used_names) = (&headers[0].shared_attributes, BTreeSet::new());
         let parts = headers.iter().zip(values).map(|(header, values)| {
             let own = &header.own_attributes;
             let name = own.layer_name.as_ref().map(text);
@@ -121,7 +121,7 @@ impl ExrFile {
                 storage: storage(header),
                 attributes: attributes(own, &shared.other),
                 camera: own.world_to_camera,
-                channels: channels(header, values, name.as_deref(), &mut taken),
+                channels: channels(header, values, name.as_deref(), &mut used_names),
                 name,
             }
         });
@@ -135,8 +135,8 @@ impl ExrFile {
     }
 
     /// Crops the file to some of its pixels. Keeps only the parts that have all of these.
-    pub(crate) fn cut(&self, bounds: PixelBounds) -> Self {
-        Self { parts: self.parts.iter().filter_map(|part| part.cut(bounds)).collect(), ..*self }
+    pub(crate) fn crop(&self, bounds: PixelBounds) -> Self {
+        Self { parts: self.parts.iter().filter_map(|part| part.crop(bounds)).collect(), ..*self }
     }
 
     /// Lists the layers. The beauty of a part comes before its other layers.
@@ -144,13 +144,13 @@ impl ExrFile {
         let mut layers = Vec::new();
         for part in &self.parts {
             let at_root: Vec<&Channel> = part.channels.iter().filter(|channel| channel.layer.is_empty()).collect();
-            let of_letters = |letters: [&str; 4]| {
+            let find_beauty = |letters: [&str; 4]| {
                 let is_color = |channel: &&Channel| letters.contains(&channel.name.as_str());
                 let (color, alone): (Vec<&Channel>, Vec<&Channel>) = at_root.iter().partition(|it| is_color(it));
                 let beauty = ExrLayer::new(BEAUTY, part, color);
                 beauty.color().is_some().then_some((beauty, alone))
             };
-            let found = of_letters(["R", "G", "B", "A"]).or_else(|| of_letters(["r", "g", "b", "a"]));
+            let found = find_beauty(["R", "G", "B", "A"]).or_else(|| find_beauty(["r", "g", "b", "a"]));
             let (beauty, mut alone) = found.map_or((None, at_root.clone()), |(beauty, alone)| (Some(beauty), alone));
             layers.extend(beauty);
             // Alpha comes after the channels that it belongs to.
@@ -173,55 +173,55 @@ impl ExrFile {
     ///
     /// # Errors
     /// [`Error::Arguments`] if there is no such layer. It suggests the closest name and lists all names.
-    pub fn layer(&self, wanted: Option<&str>, shown: &str) -> Result<ExrLayer<'_>> {
+    pub fn layer(&self, requested: Option<&str>, shown: &str) -> Result<ExrLayer<'_>> {
         let mut layers = self.layers();
         if layers.is_empty() {
             return Error::refuse(format!("{shown} has no channels"), "render info lists what a file holds");
         }
-        let named = |wanted: &str| layers.iter().position(|layer| layer.name == wanted);
-        let Some(wanted) = wanted else {
+        let named = |requested: &str| layers.iter().position(|layer| layer.name == requested);
+        let Some(requested) = requested else {
             let first = named(BEAUTY).unwrap_or(0);
             return Ok(layers.swap_remove(first));
         };
-        if let Some(at) = named(wanted) {
+        if let Some(at) = named(requested) {
             return Ok(layers.swap_remove(at));
         }
         for part in &self.parts {
-            if let Some(channel) = part.channels.iter().find(|channel| channel.full_name() == wanted) {
-                return Ok(ExrLayer::new(wanted, part, vec![channel]));
+            if let Some(channel) = part.channels.iter().find(|channel| channel.full_name() == requested) {
+                return Ok(ExrLayer::new(requested, part, vec![channel]));
             }
         }
-        self.band(wanted).ok_or_else(|| self.no_layer(wanted, shown, &[]))
+        self.band(requested).ok_or_else(|| self.no_layer(requested, shown, &[]))
     }
 
     /// Finds the spectral band that contains a wavelength such as `550nm`, in the named spectrum or else the first one.
-    fn band(&self, wanted: &str) -> Option<ExrLayer<'_>> {
-        let wanted = wanted.strip_suffix("nm")?.trim().replace(',', ".");
-        let (spectrum, nm) = match wanted.parse::<f64>() {
+    fn band(&self, requested: &str) -> Option<ExrLayer<'_>> {
+        let requested = requested.strip_suffix("nm")?.trim().replace(',', ".");
+        let (spectrum, nm) = match requested.parse::<f64>() {
             Ok(nm) => (None, nm),
-            Err(_) => wanted.split_once('.').and_then(|(name, nm)| Some((Some(name), nm.parse().ok()?)))?,
+            Err(_) => requested.split_once('.').and_then(|(name, nm)| Some((Some(name), nm.parse().ok()?)))?,
         };
-        let of = |layer: &ExrLayer| spectrum.is_none_or(|name| name == layer.name);
+        let is_named = |layer: &ExrLayer| spectrum.is_none_or(|name| name == layer.name);
         let mut spectra = self.layers().into_iter().filter_map(|layer| Some((layer.bands_nm()?, layer)));
-        let (centers, layer) = spectra.find(|(_, layer)| of(layer))?;
-        let off = |center: f64| (center - nm).abs();
-        let at = (0..centers.len()).min_by(|&a, &b| off(centers[a]).total_cmp(&off(centers[b])))?;
+        let (centers, layer) = spectra.find(|(_, layer)| is_named(layer))?;
+        let distance = |center: f64| (center - nm).abs();
+        let at = (0..centers.len()).min_by(|&a, &b| distance(centers[a]).total_cmp(&distance(centers[b])))?;
         let others = centers.iter().filter(|&&other| other != centers[at]);
         let step = others.map(|other| (other - centers[at]).abs()).fold(f64::INFINITY, f64::min);
         let band = layer.channels[at];
-        (2.0 * off(centers[at]) <= step).then(|| ExrLayer::new(&band.full_name(), layer.part, vec![band]))
+        (2.0 * distance(centers[at]) <= step).then(|| ExrLayer::new(&band.full_name(), layer.part, vec![band]))
     }
 
     /// Returns the error for a missing layer. It suggests the closest name and lists all layers, and `others` that may
     /// be named as well, such as mattes.
-    pub fn no_layer(&self, wanted: &str, shown: &str, others: &[&str]) -> Error {
+    pub fn no_layer(&self, requested: &str, shown: &str, others: &[&str]) -> Error {
         let layers = self.layers();
         let names: Vec<&str> = layers.iter().map(|layer| layer.name.as_str()).chain(others.iter().copied()).collect();
-        let elsewhere = called_elsewhere(wanted).filter(|here| names.contains(here));
-        let near = elsewhere.or_else(|| nearest(wanted, names.iter().copied()));
+        let translated = own_layer_name(requested).filter(|here| names.contains(here));
+        let near = translated.or_else(|| nearest(requested, names.iter().copied()));
         let near = near.map(|near| format!("did you mean {near}? "));
         let help = near.unwrap_or_default() + "it has " + &names.join(", ");
-        Error::Arguments { message: format!("{shown} has no layer {wanted}"), help: Some(help) }
+        Error::Arguments { message: format!("{shown} has no layer {requested}"), help: Some(help) }
     }
 
     /// Returns the value of an attribute in the first part that has it.
@@ -232,7 +232,7 @@ impl ExrFile {
 }
 
 /// Returns the name used here for a layer that other renderers call `name`.
-fn called_elsewhere(name: &str) -> Option<&'static str> {
+fn own_layer_name(name: &str) -> Option<&'static str> {
     match name.to_lowercase().as_str() {
         "depth" => Some("Z"),
         "normal" | "normals" => Some("N"),
@@ -259,11 +259,11 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
             Err(Error::Decode { path: path.to_owned(), message })
         }
         Ok(()) if start.starts_with(&MAGIC) => Ok(start),
-        Ok(()) if ends_in(path, &["toml"]) => {
+        Ok(()) if has_extension(path, &["toml"]) => {
             let help = format!("render {shown} makes the image, and render --plan {shown} says how");
             Error::refuse(format!("{shown} is a scene, not an image"), help)
         }
-        Ok(()) => match PICTURES.iter().find(|(signature, _)| start.starts_with(signature)) {
+        Ok(()) => match OTHER_FORMATS.iter().find(|(signature, _)| start.starts_with(signature)) {
             Some((_, kind)) => {
                 let help = format!("{an_image}; --exr writes one beside the picture");
                 Error::refuse(format!("{shown} is a {kind}, not an OpenEXR image"), help)
@@ -279,20 +279,20 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
     }
 }
 
-fn decode_error(path: &Path, said: &str) -> Error {
-    Error::Decode { path: path.to_owned(), message: format!("it is not a complete OpenEXR image ({said})") }
+fn decode_error(path: &Path, reason: &str) -> Error {
+    Error::Decode { path: path.to_owned(), message: format!("it is not a complete OpenEXR image ({reason})") }
 }
 
 /// Returns why the pixels of a file are not read, if that is so.
-fn unread(headers: &[Header]) -> Option<String> {
-    let of_part = |header: &Header| match header {
+fn why_unread(headers: &[Header]) -> Option<String> {
+    let part_reason = |header: &Header| match header {
         Header { deep: true, .. } => Some("a deep image, which has many values per pixel".into()),
         Header { channels, .. } if channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) => {
             Some("channel subsampling, by which several pixels share a value".into())
         }
         Header { layer_size, .. } => too_large(layer_size.width(), layer_size.height(), MOST_PIXELS),
     };
-    headers.iter().find_map(of_part)
+    headers.iter().find_map(part_reason)
 }
 
 /// Returns the channels of a part. If an earlier part has a channel of the same name, prefixes the part's name.
@@ -300,7 +300,7 @@ fn channels(
     header: &Header,
     values: Vec<FlatSamples>,
     part: Option<&str>,
-    taken: &mut BTreeSet<String>,
+    used_names: &mut BTreeSet<String>,
 ) -> Vec<Channel> {
     let channel = |(described, samples): (&ChannelDescription, FlatSamples)| {
         let full = text(&described.name);
@@ -309,13 +309,13 @@ fn channels(
         Channel { layer: layer.to_owned(), name: name.to_owned(), sampling, samples }
     };
     let mut channels: Vec<Channel> = header.channels.list.iter().zip(values).map(channel).collect();
-    if let Some(part) = part.filter(|_| channels.iter().any(|channel| taken.contains(&channel.full_name()))) {
+    if let Some(part) = part.filter(|_| channels.iter().any(|channel| used_names.contains(&channel.full_name()))) {
         for channel in &mut channels {
             channel.layer =
                 if channel.layer.is_empty() { part.to_owned() } else { format!("{part}.{}", channel.layer) };
         }
     }
-    taken.extend(channels.iter().map(Channel::full_name));
+    used_names.extend(channels.iter().map(Channel::full_name));
     channels
 }
 

@@ -7,9 +7,9 @@ use exr::error::{Error, Result};
 use exr::meta::header::Header;
 
 /// The bytes of the magic number and version, before the first attribute.
-const START: usize = 8;
+const HEADER_START: usize = 8;
 /// The bit for multipart files, in the second byte of the version.
-const SEVERAL_PARTS: u8 = 0x10;
+const MULTIPART_BIT: u8 = 0x10;
 
 /// Encodes everything up to the table of block offsets, with the attributes of each part in alphabetical order.
 ///
@@ -26,7 +26,7 @@ pub(super) fn encode(headers: &[Header]) -> Result<Vec<u8>> {
     }
     let mut bytes = bytes.into_inner();
     let parts = attributes(&bytes);
-    for entries in &parts.of_parts {
+    for entries in &parts.by_part {
         let mut sorted: Vec<Vec<u8>> = entries.iter().map(|entry| bytes[entry.clone()].to_vec()).collect();
         sorted.sort();
         if let Some(first) = entries.first() {
@@ -40,10 +40,10 @@ pub(super) fn encode(headers: &[Header]) -> Result<Vec<u8>> {
 
 /// Sets an int attribute of the first part, if it exists. Counts beyond 2^31 - 1 are clamped to that.
 pub(super) fn set_count(head: &mut [u8], name: &str, count: u64) {
-    let named = [name.as_bytes(), b"\0int\0"].concat();
-    let of_parts = attributes(head).of_parts;
+    let prefix = [name.as_bytes(), b"\0int\0"].concat();
+    let by_part = attributes(head).by_part;
     let found =
-        of_parts.first().and_then(|entries| entries.iter().find(|entry| head[(*entry).clone()].starts_with(&named)));
+        by_part.first().and_then(|entries| entries.iter().find(|entry| head[(*entry).clone()].starts_with(&prefix)));
     if let Some(entry) = found {
         let count = i32::try_from(count).unwrap_or(i32::MAX);
         head[entry.end - size_of::<i32>()..entry.end].copy_from_slice(&count.to_le_bytes());
@@ -53,15 +53,15 @@ pub(super) fn set_count(head: &mut [u8], name: &str, count: u64) {
 /// The positions of the attributes.
 struct Attributes {
     /// The byte range of each attribute, part by part.
-    of_parts: Vec<Vec<Range<usize>>>,
+    by_part: Vec<Vec<Range<usize>>>,
     /// The end of the last part's header.
     end: usize,
 }
 
 fn attributes(file: &[u8]) -> Attributes {
     let text_end = |from: usize| from + file[from..].iter().position(|&byte| byte == 0).unwrap_or(0) + 1;
-    let several = file[5] & SEVERAL_PARTS != 0;
-    let (mut at, mut of_parts) = (START, Vec::new());
+    let is_multipart = file[5] & MULTIPART_BIT != 0;
+    let (mut at, mut by_part) = (HEADER_START, Vec::new());
     loop {
         let mut entries = Vec::new();
         while file[at] != 0 {
@@ -73,12 +73,12 @@ fn attributes(file: &[u8]) -> Attributes {
         }
         at += 1;
         // The list of headers of a multipart file ends with an empty header.
-        if several && entries.is_empty() {
-            return Attributes { of_parts, end: at };
+        if is_multipart && entries.is_empty() {
+            return Attributes { by_part, end: at };
         }
-        of_parts.push(entries);
-        if !several {
-            return Attributes { of_parts, end: at };
+        by_part.push(entries);
+        if !is_multipart {
+            return Attributes { by_part, end: at };
         }
     }
 }

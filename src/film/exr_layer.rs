@@ -25,7 +25,7 @@ fn center_nm(channel: &Channel) -> Option<f64> {
 
 impl<'f> ExrLayer<'f> {
     pub(super) fn new(name: &str, part: &'f Part, mut channels: Vec<&'f Channel>) -> Self {
-        channels.sort_by_key(|channel| place(&channel.name));
+        channels.sort_by_key(|channel| channel_order(&channel.name));
         Self { name: name.to_owned(), part, channels }
     }
 
@@ -52,7 +52,7 @@ impl<'f> ExrLayer<'f> {
 }
 
 /// Returns the position of a channel in the order of its layer.
-fn place(name: &str) -> usize {
-    let known = ["r", "g", "b", "a", "x", "y", "z", "u", "v"];
-    known.iter().position(|known| *known == name.to_lowercase()).unwrap_or(known.len())
+fn channel_order(name: &str) -> usize {
+    let order = ["r", "g", "b", "a", "x", "y", "z", "u", "v"];
+    order.iter().position(|order| *order == name.to_lowercase()).unwrap_or(order.len())
 }

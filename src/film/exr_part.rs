@@ -67,14 +67,14 @@ pub struct Part {
 
 impl Part {
     /// Crops the part to some of its pixels. Returns none if the part does not have all of them.
-    pub(super) fn cut(&self, bounds: PixelBounds) -> Option<Self> {
+    pub(super) fn crop(&self, bounds: PixelBounds) -> Option<Self> {
         let [left, top] = [0, 1].map(|axis| (bounds.corner[axis] - self.bounds.corner[axis]) as usize);
         let row = |y: usize| {
             let first = (top + y) * self.bounds.size[0] + left;
             first..first + bounds.size[0]
         };
         let places = || (0..bounds.size[1]).flat_map(row);
-        let channels = || self.channels.iter().map(|channel| channel.of_pixels(places())).collect();
+        let channels = || self.channels.iter().map(|channel| channel.with_pixels(places())).collect();
         let is_whole = self.bounds.common(&bounds) == Some(bounds);
         is_whole.then(|| Self {
             name: self.name.clone(),
@@ -110,7 +110,7 @@ impl Channel {
         if self.layer.is_empty() { self.name.clone() } else { format!("{}.{}", self.layer, self.name) }
     }
 
-    fn of_pixels(&self, places: impl Iterator<Item = usize>) -> Self {
+    fn with_pixels(&self, places: impl Iterator<Item = usize>) -> Self {
         let samples = match &self.samples {
             FlatSamples::F16(values) => FlatSamples::F16(places.map(|at| values[at]).collect()),
             FlatSamples::F32(values) => FlatSamples::F32(places.map(|at| values[at]).collect()),
@@ -147,21 +147,21 @@ impl Channel {
 
     /// Computes statistics over all values.
     pub fn statistics(&self) -> Statistics {
-        let mut found =
+        let mut result =
             Statistics { nan: 0, infinite: 0, finite: 0, min: f64::INFINITY, max: f64::NEG_INFINITY, mean: 0.0 };
         for value in self.values() {
             if value.is_nan() {
-                found.nan += 1;
+                result.nan += 1;
             } else if value.is_infinite() {
-                found.infinite += 1;
+                result.infinite += 1;
             } else {
-                found.finite += 1;
-                (found.min, found.max) = (found.min.min(value), found.max.max(value));
-                found.mean += value;
+                result.finite += 1;
+                (result.min, result.max) = (result.min.min(value), result.max.max(value));
+                result.mean += value;
             }
         }
-        found.mean /= found.finite.max(1) as f64;
-        found
+        result.mean /= result.finite.max(1) as f64;
+        result
     }
 }
 

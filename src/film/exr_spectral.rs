@@ -8,7 +8,7 @@ use exr::prelude::{AttributeValue, ImageAttributes, Text};
 use super::exr::{Heading, attributes, chromaticities, colors, display_window};
 use super::exr_blocks::{self, ScanLinePart};
 use super::exr_column::{Column, Of};
-use super::file::replace_by;
+use super::file::replace_with;
 use super::format::Compression;
 use super::rows::Rows;
 use crate::error::Result;
@@ -51,7 +51,7 @@ pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) ->
     let mut shared = ImageAttributes::new(display_window(film));
     shared.chromaticities = Some(chromaticities(film));
     let parts = [ScanLinePart::new(film, columns, Compression::Zip, shared, attributes)];
-    replace_by(path, |place| exr_blocks::write(&parts, rows, place, path).map(drop))
+    replace_with(path, |output| exr_blocks::write(&parts, rows, output, path).map(drop))
 }
 
 fn text(value: &str) -> AttributeValue {

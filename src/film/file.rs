@@ -9,14 +9,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use crate::error::{Error, Result};
 
 /// The maximum number of links that are followed, as on Linux.
-const MOST_LINKS: u32 = 40;
+const MAX_LINKS: u32 = 40;
 /// The maximum number of temporary files left behind by earlier runs that died and had the same process ID.
-const MOST_LEFT_BEHIND: u32 = 1000;
+const MAX_LEFTOVERS: u32 = 1000;
 
 /// The destination of a file's bytes. It can seek, because some of the first bytes may be known last.
-pub(super) trait Place: Write + Seek {}
+pub(super) trait Destination: Write + Seek {}
 
-impl<P: Write + Seek> Place for P {}
+impl<P: Write + Seek> Destination for P {}
 
 /// Writes a file under a temporary name next to the target, then renames it, so that readers never see an incomplete
 /// file. Creates missing folders.
@@ -27,7 +27,7 @@ impl<P: Write + Seek> Place for P {}
 /// # Errors
 /// If the file cannot be written. An existing file is then untouched, and nothing else is left behind.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
-    replace_by(path, |place| place.write_all(bytes).map_err(|source| cannot_write(path, source)))
+    replace_with(path, |place| place.write_all(bytes).map_err(|source| cannot_write(path, source)))
 }
 
 /// Replaces a file like [`replace_file`] does, with bytes that `write` produces one after another. For a device, all
@@ -35,7 +35,7 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
 ///
 /// # Errors
 /// The errors of [`replace_file`], and those of `write`.
-pub(super) fn replace_by<T>(path: &Path, write: impl FnOnce(&mut dyn Place) -> Result<T>) -> Result<T> {
+pub(super) fn replace_with<T>(path: &Path, write: impl FnOnce(&mut dyn Destination) -> Result<T>) -> Result<T> {
     let failed = |source| cannot_write(path, source);
     let target = match Target::of(path).map_err(failed)? {
         Target::Device => {
@@ -46,21 +46,21 @@ pub(super) fn replace_by<T>(path: &Path, write: impl FnOnce(&mut dyn Place) -> R
         }
         Target::File(target) => target,
     };
-    let begun = Temporary::beside(&target).or_else(|error| match error.kind() {
+    let created = Temporary::create_near(&target).or_else(|error| match error.kind() {
         // The folder may have been removed while the image was rendered.
-        io::ErrorKind::NotFound => make_folder(&target).and_then(|()| Temporary::beside(&target)),
+        io::ErrorKind::NotFound => make_folder(&target).and_then(|()| Temporary::create_near(&target)),
         _ => Err(error),
     });
-    let (mut file, temporary) = begun.map_err(failed)?;
+    let (mut file, temporary) = created.map_err(failed)?;
     let answer = write(&mut file)?;
-    let become_file = || {
+    let finish = || {
         if let Ok(before) = fs::metadata(&target) {
             file.set_permissions(before.permissions())?;
         }
         file.sync_all()?;
-        temporary.become_file(&target)
+        temporary.finish(&target)
     };
-    become_file().map(|()| answer).map_err(failed)
+    finish().map(|()| answer).map_err(failed)
 }
 
 /// Returns the error for a file that cannot be written.
@@ -79,16 +79,16 @@ pub(super) fn cannot_read(path: &Path, source: io::Error) -> Error {
 /// If the folder cannot be created or written to, if the path is a folder or a circular link, or if the file is
 /// write-protected.
 pub fn check_writable(path: &Path) -> Result<()> {
-    let tried = Target::of(path).and_then(|target| match target {
+    let attempt = Target::of(path).and_then(|target| match target {
         // Opening and closing a pipe would signal the end of the image to its reader.
         Target::Device if is_pipe(path) => Ok(()),
         Target::Device => File::options().write(true).open(path).map(drop),
         Target::File(target) => {
             make_folder(&target)?;
-            Temporary::beside(&target).map(drop)
+            Temporary::create_near(&target).map(drop)
         }
     });
-    tried.map_err(|source| cannot_write(path, source))
+    attempt.map_err(|source| cannot_write(path, source))
 }
 
 /// Creates the folder of a file, if it is missing.
@@ -118,7 +118,7 @@ impl Target {
             _ => {}
         }
         let mut target = path.to_owned();
-        for _ in 0..MOST_LINKS {
+        for _ in 0..MAX_LINKS {
             match fs::read_link(&target) {
                 Ok(next) => target = target.parent().unwrap_or(Path::new("")).join(next),
                 Err(_) => return Ok(Self::File(target)),
@@ -143,15 +143,15 @@ fn is_pipe(_: &Path) -> bool {
 struct Temporary(PathBuf);
 
 /// The temporary files that are being written.
-static WRITTEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-fn being_written() -> MutexGuard<'static, Vec<PathBuf>> {
-    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
+fn unfinished_files() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Removes all unfinished files when the process is about to end. From then on, no file can be begun or finished.
 pub fn remove_unfinished() {
-    let mut unfinished = being_written();
+    let mut unfinished = unfinished_files();
     unfinished.drain(..).for_each(|path| drop(fs::remove_file(path)));
     // The lock is never released, so nobody begins another file before the process ends.
     std::mem::forget(unfinished);
@@ -159,24 +159,24 @@ pub fn remove_unfinished() {
 
 impl Temporary {
     /// Creates a temporary file in the folder of the target.
-    fn beside(target: &Path) -> io::Result<(File, Self)> {
+    fn create_near(target: &Path) -> io::Result<(File, Self)> {
         let mut number = 0;
         loop {
             let path = target.with_file_name(format!(".abbe-{}-{number}", std::process::id()));
-            let mut unfinished = being_written();
+            let mut unfinished = unfinished_files();
             match File::create_new(&path) {
                 Ok(file) => {
                     unfinished.push(path.clone());
                     return Ok((file, Self(path)));
                 }
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists && number < MOST_LEFT_BEHIND => number += 1,
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists && number < MAX_LEFTOVERS => number += 1,
                 Err(error) => return Err(error),
             }
         }
     }
 
-    fn become_file(self, target: &Path) -> io::Result<()> {
-        let mut unfinished = being_written();
+    fn finish(self, target: &Path) -> io::Result<()> {
+        let mut unfinished = unfinished_files();
         fs::rename(&self.0, target)?;
         unfinished.retain(|path| *path != self.0);
         Ok(())
@@ -185,7 +185,7 @@ impl Temporary {
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        let mut unfinished = being_written();
+        let mut unfinished = unfinished_files();
         if let Some(place) = unfinished.iter().position(|path| *path == self.0) {
             unfinished.swap_remove(place);
             // The earlier error is the one to report. Failing to remove the temporary file as well changes nothing.

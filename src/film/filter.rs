@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
 use super::mitchell::{Mitchell, RADIUS};
-use crate::math::{DVec2, disk};
+use crate::math::{DVec2, sample_disk};
 
 /// The reconstruction filter: where camera samples fall, within and around their pixel.
 ///
@@ -44,9 +44,9 @@ pub enum Filter {
 /// The distance at which the normal distribution is cut off, in standard deviations. 0.03 % of it lies beyond.
 const CUT: f64 = 4.0;
 /// The fraction of the two-dimensional normal distribution within [`CUT`]: 1 - exp(-CUT^2 / 2).
-const WITHIN: f64 = 0.9996645373720975;
+const SHARE_WITHIN: f64 = 0.9996645373720975;
 /// The maximum distance of a sample from the center of its pixel, on one axis.
-const FARTHEST: f64 = 16.0;
+const MAX_REACH: f64 = 16.0;
 /// The coefficients of the Blackman-Harris window.
 const WINDOW: [f64; 4] = [0.35875, 0.48829, 0.14128, 0.01168];
 
@@ -67,9 +67,9 @@ impl Filter {
         match self {
             Self::Box => u.into(),
             Self::Center => middle,
-            Self::Tent { radius } => middle + DVec2::from(u.map(tent)) * radius,
-            Self::Gaussian { sigma } => middle + normal(u) * sigma,
-            Self::BlackmanHarris { radius } => middle + DVec2::from(u.map(blackman_harris)) * radius,
+            Self::Tent { radius } => middle + DVec2::from(u.map(sample_tent)) * radius,
+            Self::Gaussian { sigma } => middle + sample_normal(u) * sigma,
+            Self::BlackmanHarris { radius } => middle + DVec2::from(u.map(sample_blackman_harris)) * radius,
             Self::Mitchell(cubic) => middle + DVec2::from(u.map(|u| cubic.place(u))),
         }
     }
@@ -80,15 +80,15 @@ impl Filter {
     /// A filter without width has no such value. Contributions that cannot be sampled at its position, but only found,
     /// are spread over the pixel.
     pub fn value(self, offset: DVec2) -> f64 {
-        let each = |value: &dyn Fn(f64) -> f64| value(offset.x) * value(offset.y);
+        let separable = |value: &dyn Fn(f64) -> f64| value(offset.x) * value(offset.y);
         match self {
-            Self::Box | Self::Center => each(&|x| if (-0.5..0.5).contains(&x) { 1.0 } else { 0.0 }),
-            Self::Tent { radius } => each(&|x| (1.0 - x.abs() / radius).max(0.0) / radius),
+            Self::Box | Self::Center => separable(&|x| if (-0.5..0.5).contains(&x) { 1.0 } else { 0.0 }),
+            Self::Tent { radius } => separable(&|x| (1.0 - x.abs() / radius).max(0.0) / radius),
             Self::Gaussian { sigma } => {
                 let squared = offset.length_squared() / (sigma * sigma);
-                if squared < CUT * CUT { libm::exp(-0.5 * squared) / (TAU * sigma * sigma * WITHIN) } else { 0.0 }
+                if squared < CUT * CUT { libm::exp(-0.5 * squared) / (TAU * sigma * sigma * SHARE_WITHIN) } else { 0.0 }
             }
-            Self::BlackmanHarris { radius } => each(&|x| {
+            Self::BlackmanHarris { radius } => separable(&|x| {
                 if x.abs() >= radius {
                     return 0.0;
                 }
@@ -96,7 +96,7 @@ impl Filter {
                 let cos = |times: f64| libm::cos(0.5 * TAU * times * x / radius);
                 (a + b * cos(1.0) + c * cos(2.0) + d * cos(3.0)) / (2.0 * a * radius)
             }),
-            Self::Mitchell(cubic) => each(&|x| cubic.value(x)),
+            Self::Mitchell(cubic) => separable(&|x| cubic.value(x)),
         }
     }
 
@@ -118,7 +118,7 @@ impl Filter {
     /// Returns the integral of the filter's absolute value. This is the weight of a sample before its sign.
     pub fn absolute_integral(self) -> f64 {
         match self {
-            Self::Mitchell(cubic) => cubic.absolute() * cubic.absolute(),
+            Self::Mitchell(cubic) => cubic.absolute_integral() * cubic.absolute_integral(),
             _ => 1.0,
         }
     }
@@ -162,14 +162,14 @@ impl Filter {
     fn width(self) -> Option<(&'static str, f64, f64)> {
         match self {
             Self::Box | Self::Center | Self::Mitchell(_) => None,
-            Self::Tent { radius } | Self::BlackmanHarris { radius } => Some(("radius", radius, FARTHEST)),
-            Self::Gaussian { sigma } => Some(("sigma", sigma, FARTHEST / CUT)),
+            Self::Tent { radius } | Self::BlackmanHarris { radius } => Some(("radius", radius, MAX_REACH)),
+            Self::Gaussian { sigma } => Some(("sigma", sigma, MAX_REACH / CUT)),
         }
     }
 }
 
 /// Samples the density 1 - |x| on -1 to 1 by inversion.
-fn tent(u: f64) -> f64 {
+fn sample_tent(u: f64) -> f64 {
     if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 * (1.0 - u)).sqrt() }
 }
 
@@ -177,29 +177,29 @@ fn tent(u: f64) -> f64 {
 /// so that strata stay compact.
 ///
 /// The disk has the fraction rho^2 of its area within radius rho, the distribution 1 - exp(-r^2 / 2) within r.
-fn normal(u: [f64; 2]) -> DVec2 {
-    let point = disk(u);
+fn sample_normal(u: [f64; 2]) -> DVec2 {
+    let point = sample_disk(u);
     let squared = point.length_squared();
     if squared == 0.0 {
         return DVec2::ZERO;
     }
-    let stretched = -2.0 * libm::log1p(-WITHIN * squared.min(1.0));
+    let stretched = -2.0 * libm::log1p(-SHARE_WITHIN * squared.min(1.0));
     point * (stretched / squared).sqrt()
 }
 
 /// Samples the density of the window on -1 to 1. Inverts its integral by Newton's method, safeguarded by bisection.
-fn blackman_harris(u: f64) -> f64 {
+fn sample_blackman_harris(u: f64) -> f64 {
     let [a, b, c, d] = WINDOW;
     // Solves for the half above 0, where the window falls from the center to the end.
-    let wanted = (2.0 * u - 1.0).abs();
-    let (mut low, mut high, mut x) = (0.0, 1.0, 0.5 * wanted);
+    let target = (2.0 * u - 1.0).abs();
+    let (mut low, mut high, mut x) = (0.0, 1.0, 0.5 * target);
     for _ in 0..60 {
         let (sin, cos) = libm::sincos(0.5 * TAU * x);
         let (sin2, cos2) = (2.0 * sin * cos, 2.0 * cos * cos - 1.0);
         let (sin3, cos3) = (sin2 * cos + cos2 * sin, cos2 * cos - sin2 * sin);
         let share = x + (b * sin + c * sin2 / 2.0 + d * sin3 / 3.0) / (0.5 * TAU * a);
         let density = 1.0 + (b * cos + c * cos2 + d * cos3) / a;
-        let error = share - wanted;
+        let error = share - target;
         if error > 0.0 {
             high = x
         } else {
@@ -223,11 +223,11 @@ mod tests {
 
     #[test]
     fn the_middle_of_the_window_is_an_exact_root() {
-        assert_eq!(blackman_harris(0.5), 0.0);
+        assert_eq!(sample_blackman_harris(0.5), 0.0);
     }
 
     #[test]
     fn the_share_within_the_cut_is_that_of_the_normal_distribution() {
-        assert_eq!(WITHIN, -libm::expm1(-0.5 * CUT * CUT));
+        assert_eq!(SHARE_WITHIN, -libm::expm1(-0.5 * CUT * CUT));
     }
 }

@@ -35,7 +35,7 @@ pub struct Format {
 }
 
 /// The last components of the channel names that DWA compresses lossily (OpenEXR 3.3, ImfDwaCompressor.cpp).
-const COLORS_OF_DWA: [&str; 6] = ["R", "G", "B", "Y", "BY", "RY"];
+const DWA_COLOR_CHANNELS: [&str; 6] = ["R", "G", "B", "Y", "BY", "RY"];
 
 impl Format {
     /// Requests layers in place of the present ones.
@@ -66,8 +66,8 @@ impl Format {
         // rounds all 32-bit values.
         let is_dwa = self.compression.is_of_16_bits();
         let depth = Some("Z").filter(|_| !is_dwa);
-        let takes_for_color = |layer: &Layer| layer.channels().iter().any(|name| COLORS_OF_DWA.contains(name));
-        let is_spoiled = |layer: &&Layer| !layer.is_color() && (!is_dwa || takes_for_color(layer));
+        let looks_like_color = |layer: &Layer| layer.channels().iter().any(|name| DWA_COLOR_CHANNELS.contains(name));
+        let is_spoiled = |layer: &&Layer| !layer.is_color() && (!is_dwa || looks_like_color(layer));
         let layers = self.layers.iter().filter(is_spoiled).map(|layer| layer.name());
         let spoiled: Vec<&str> = depth.into_iter().chain(layers).collect();
         (!spoiled.is_empty()).then(|| {

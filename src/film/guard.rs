@@ -15,13 +15,13 @@ thread_local! {
 }
 
 /// Runs a decoder. Returns its result, or an error if it panics, without printing the panic.
-pub(crate) fn guarded<T, E: Display>(decode: impl FnOnce() -> Result<T, E>) -> Result<T, String> {
+pub(crate) fn catch_panics<T, E: Display>(decode: impl FnOnce() -> Result<T, E>) -> Result<T, String> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
-        let others = take_hook();
+        let previous_hook = take_hook();
         set_hook(Box::new(move |info| {
             if !QUIET.get() {
-                others(info);
+                previous_hook(info);
             }
         }));
     });
@@ -42,15 +42,15 @@ pub(crate) const MOST_PIXELS: usize = 1 << 28;
 
 /// Returns the message for an image with more pixels than are read, or none if it is small enough.
 pub(crate) fn too_large(width: usize, height: usize, most: usize) -> Option<String> {
-    let said = || format!("its {width} x {height} pixels are more than {most}");
-    (width.saturating_mul(height) > most).then(said)
+    let message = || format!("its {width} x {height} pixels are more than {most}");
+    (width.saturating_mul(height) > most).then(message)
 }
 
 /// The bytes of texels that a file of any length may claim.
-const ALWAYS: u64 = 1 << 27;
+const ALWAYS_ALLOWED_BYTES: u64 = 1 << 27;
 /// The maximum bytes of texels per byte of a file. Deflate compresses at best 1032 bytes into one (RFC 1951: 258 by 2
 /// bits), and with a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as dense.
-const DENSEST: u64 = 1032 * 24;
+const MAX_EXPANSION: u64 = 1032 * 24;
 
 /// Refuses images without texels, and sizes whose `bytes` would exhaust the memory before the decoder notices that the
 /// file does not have these texels.
@@ -58,19 +58,19 @@ pub(crate) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Resu
     if width == 0 || height == 0 {
         return Err("it has no pixels".into());
     }
-    if bytes > ALWAYS.max(DENSEST * file.len() as u64) {
+    if bytes > ALWAYS_ALLOWED_BYTES.max(MAX_EXPANSION * file.len() as u64) {
         return Err(format!("its {} bytes cannot hold {width} x {height} pixels", file.len()));
     }
     Ok(())
 }
 
 /// The bytes that a section of a DWAA or DWAB block may claim in addition to twice the bytes of the block's pixels.
-const CLAIMED: u64 = 1 << 20;
+const MAX_EXTRA_BYTES: u64 = 1 << 20;
 
 /// Refuses an OpenEXR file with DWAA or DWAB blocks that claim to be much larger than their pixels, because the decoder
 /// allocates the memory before it unpacks them. Each block begins with a version and nine counts of bytes or half
 /// floats, little-endian, unless it is stored uncompressed because compression would make it larger.
-pub(crate) fn claims_fit(bytes: &[u8]) -> exr::error::Result<()> {
+pub(crate) fn check_claimed_sizes(bytes: &[u8]) -> exr::error::Result<()> {
     let reader = exr::block::read(Cursor::new(bytes), false)?;
     let is_packed = |header: &Header| matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_));
     let headers = reader.headers().to_vec();
@@ -89,7 +89,7 @@ pub(crate) fn claims_fit(bytes: &[u8]) -> exr::error::Result<()> {
         let pixels = header.get_absolute_block_pixel_coordinates(place)?.size.area();
         let size = (pixels as u64).saturating_mul(header.channels.bytes_per_pixel as u64);
         let numbers = packed.as_chunks::<8>().0.iter().map(|number| u64::from_le_bytes(*number));
-        let most = size.saturating_mul(2).saturating_add(CLAIMED);
+        let most = size.saturating_mul(2).saturating_add(MAX_EXTRA_BYTES);
         if packed.len() as u64 != size && numbers.skip(1).take(9).any(|number| number > most) {
             return Err(exr::error::Error::Invalid("a block claims to be larger than the image".into()));
         }

@@ -168,8 +168,8 @@ impl Layer {
 
     /// Returns whether 16 bits suffice if the file uses them, as they do for light and for values up to 1.
     pub fn may_be_half(self) -> bool {
-        let exact = matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples | Self::Residual);
-        !exact && !self.is_matte() && !self.is_of_polarization()
+        let is_exact = matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples | Self::Residual);
+        !is_exact && !self.is_matte() && !self.is_of_polarization()
     }
 
     /// Returns whether the layer is meant for viewing. Data for computation, such as an albedo or a half image, is not.
@@ -242,13 +242,13 @@ fn unknown_layers(unknown: &[&str]) -> String {
     }
     let meant = |name: &&str| layer_elsewhere(name).map(str::to_owned).or_else(|| near(name));
     let meant: Vec<Option<String>> = unknown.iter().map(meant).collect();
-    let told = |(name, meant): (&&str, &Option<String>)| match meant {
+    let described = |(name, meant): (&&str, &Option<String>)| match meant {
         Some(meant) => format!("`{name}` ({meant})"),
         None => format!("`{name}`"),
     };
-    let told = unknown.iter().zip(&meant).map(told).collect::<Vec<_>>().join(", ");
+    let described = unknown.iter().zip(&meant).map(described).collect::<Vec<_>>().join(", ");
     let list = if meant.contains(&None) { format!("; known are {}", list()) } else { String::new() };
-    format!("there are no layers {told}{list}")
+    format!("there are no layers {described}{list}")
 }
 
 /// Returns the degree of polarization, the degree of linear polarization, both 0 to 1, and the angle of linear

@@ -43,17 +43,17 @@ impl Mitchell {
     }
 
     /// Returns the integral of the absolute value on one axis.
-    pub(super) fn absolute(self) -> f64 {
-        1.0 + 4.0 * self.negative()
+    pub(super) fn absolute_integral(self) -> f64 {
+        1.0 + 4.0 * self.negative_integral()
     }
 
     /// Samples an offset from the center with a density proportional to the absolute value. Inverts its integral by
     /// Newton's method, safeguarded by bisection.
     pub(super) fn place(self, u: f64) -> f64 {
-        let wanted = 0.5 * self.absolute() * (2.0 * u - 1.0).abs();
-        let (mut low, mut high, mut x) = (0.0, RADIUS, wanted);
+        let target = 0.5 * self.absolute_integral() * (2.0 * u - 1.0).abs();
+        let (mut low, mut high, mut x) = (0.0, RADIUS, target);
         for _ in 0..60 {
-            let error = self.within(x) - wanted;
+            let error = self.integral_to(x) - target;
             if error == 0.0 {
                 break;
             }
@@ -74,18 +74,18 @@ impl Mitchell {
     }
 
     /// Returns the distance from the end of the filter at which the outer piece changes its sign.
-    fn change(self) -> f64 {
+    fn sign_change(self) -> f64 {
         if self.c > 0.0 { 6.0 * self.c / (self.b + 6.0 * self.c) } else { 0.0 }
     }
 
     /// Returns the integral of the negative part on one side, without its sign.
-    fn negative(self) -> f64 {
-        let change = self.change();
-        self.c * change * change * change / 12.0
+    fn negative_integral(self) -> f64 {
+        let sign_change = self.sign_change();
+        self.c * sign_change * sign_change * sign_change / 12.0
     }
 
     /// Returns the integral of the absolute value from the center to x.
-    fn within(self, x: f64) -> f64 {
+    fn integral_to(self, x: f64) -> f64 {
         let Self { b, c } = self;
         if x < 1.0 {
             let squared = x * x;
@@ -94,7 +94,7 @@ impl Mitchell {
         }
         let t = RADIUS - x;
         let beyond = t * t * t * (2.0 * c - (b + 6.0 * c) * t / 4.0) / 6.0;
-        let beyond = if t < self.change() { beyond } else { 2.0 * self.negative() - beyond };
-        0.5 * self.absolute() - beyond
+        let beyond = if t < self.sign_change() { beyond } else { 2.0 * self.negative_integral() - beyond };
+        0.5 * self.absolute_integral() - beyond
     }
 }

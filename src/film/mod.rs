@@ -52,4 +52,4 @@ pub use window::{Overscan, Window};
 
 pub(crate) use blocks::{BlockReader, BlockWriter, Kind, write_blocks};
 pub(crate) use exr_attributes::{primaries as exr_primaries, text as exr_text};
-pub(crate) use guard::{MOST_PIXELS, MOST_TEXELS, claims_fit, fits, guarded, too_large};
+pub(crate) use guard::{MOST_PIXELS, MOST_TEXELS, catch_panics, check_claimed_sizes, fits, too_large};

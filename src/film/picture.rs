@@ -20,8 +20,9 @@ pub fn write_png(film: &Film, exposure: f64, path: &Path) -> Result<()> {
 pub fn film_png(film: &Film, exposure: f64, path: &Path) -> Result<Vec<u8>> {
     let gain = libm::exp2(exposure);
     let to_rec709 = film.color_space.to_rec709();
-    let encoded = |rgb: [f32; 3]| encode_srgb(apply(&to_rec709, rgb.map(|x| f64::from(x) * gain)).map(|x| x as f32));
-    let bytes: Vec<u8> = film.pixels.iter().flat_map(|pixel| encoded(pixel.rgb)).collect();
+    let encode_pixel =
+        |rgb: [f32; 3]| encode_srgb(apply(&to_rec709, rgb.map(|x| f64::from(x) * gain)).map(|x| x as f32));
+    let bytes: Vec<u8> = film.pixels.iter().flat_map(|pixel| encode_pixel(pixel.rgb)).collect();
     png(&bytes, [film.width, film.height], path)
 }
 

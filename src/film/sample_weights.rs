@@ -19,29 +19,29 @@ pub struct SampleWeights {
     /// The integral of the filter's absolute value.
     absolute: f64,
     /// The weights of an added and of a subtracted sample, times the number of all samples.
-    each: [f64; 2],
+    weights: [f64; 2],
 }
 
 impl SampleWeights {
     /// Computes the weights for the given numbers of added and subtracted samples. If none is added, there is nothing
     /// to subtract from, and the image consists of the others.
     pub fn new(filter: Filter, counts: [u32; 2]) -> Self {
-        Self::by(filter.absolute_integral(), counts)
+        Self::with_integral(filter.absolute_integral(), counts)
     }
 
-    fn by(absolute: f64, counts: [u32; 2]) -> Self {
+    fn with_integral(absolute: f64, counts: [u32; 2]) -> Self {
         let [added, subtracted] = counts.map(f64::from);
-        let each = match counts {
+        let weights = match counts {
             [_, 0] => [1.0, 0.0],
             [0, _] => [0.0, -1.0],
             _ => [(added + subtracted + absolute * subtracted) / added, absolute],
         };
-        Self { counts, absolute, each }
+        Self { counts, absolute, weights }
     }
 
     /// Returns the weights of a part of these samples on its own.
     pub fn of_part(&self, counts: [u32; 2]) -> Self {
-        Self::by(self.absolute, counts)
+        Self::with_integral(self.absolute, counts)
     }
 
     /// Returns the weights of the samples outside a part.
@@ -72,7 +72,7 @@ impl SampleWeights {
     /// Returns the weighted sum over all samples, given the sums over the added and the subtracted ones. Divided by the
     /// number of all samples, it is a mean.
     pub fn sum(&self, [added, subtracted]: [f64; 2]) -> f64 {
-        self.each[0] * added - self.each[1] * subtracted
+        self.weights[0] * added - self.weights[1] * subtracted
     }
 
     /// Estimates the variance of a mean from both sums and the sum of all squares. For a single sample nothing is

@@ -70,8 +70,8 @@ impl Shard {
         let [x, y] = [pixel % window.width, pixel / window.width];
         let number = y / TILE * window.width.div_ceil(TILE) + x / TILE;
         let width = (window.width - x / TILE * TILE).min(TILE);
-        let own = number % self.count == self.number - 1;
-        own.then_some([(number / self.count) as usize, (y % TILE * width + x % TILE) as usize])
+        let is_own = number % self.count == self.number - 1;
+        is_own.then_some([(number / self.count) as usize, (y % TILE * width + x % TILE) as usize])
     }
 }
 

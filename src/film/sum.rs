@@ -123,12 +123,12 @@ impl PixelSum {
         self.kept
     }
 
-    /// Returns the pixel: the mean over the samples that were kept, including the subtracted ones, plus `beside`, light
+    /// Returns the pixel: the mean over the samples that were kept, including the subtracted ones, plus `extra`, light
     /// that is already a mean. The depth is that of the added samples.
-    pub fn pixel(&self, subtracted: &Self, weights: &SampleWeights, beside: [f64; 3]) -> Pixel {
+    pub fn pixel(&self, subtracted: &Self, weights: &SampleWeights, extra: [f64; 3]) -> Pixel {
         let mean = |of: &dyn Fn(&Self) -> f64| weights.sum([of(self), of(subtracted)]) / weights.taken();
         Pixel {
-            rgb: std::array::from_fn(|i| stored(mean(&|sum| sum.total.rgb[i]) + beside[i])),
+            rgb: std::array::from_fn(|i| stored(mean(&|sum| sum.total.rgb[i]) + extra[i])),
             alpha: mean(&|sum| sum.total.met.into()).clamp(0.0, 1.0) as f32,
             depth: if self.nearest.is_finite() { stored(self.nearest) } else { DEPTH_OF_NOTHING },
             samples: weights.kept() as f32,

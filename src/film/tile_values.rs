@@ -37,18 +37,18 @@ impl TileValues {
     /// Copies the values to their place in a film.
     pub fn put_into(&self, film: &mut Film, place: TilePlace) {
         let window = film.window();
-        put(&self.pixels, 1, window, place, &mut film.pixels);
+        copy_rows(&self.pixels, 1, window, place, &mut film.pixels);
         for (layer, values) in film.layers.iter_mut().zip(&self.layers) {
-            put(values, layer.numbers(), window, place, &mut layer.values);
+            copy_rows(values, layer.numbers(), window, place, &mut layer.values);
         }
         if let Some(spectral) = &mut film.spectral {
-            put(&self.spectral, spectral.numbers(), window, place, &mut spectral.values);
+            copy_rows(&self.spectral, spectral.numbers(), window, place, &mut spectral.values);
         }
     }
 }
 
 /// Copies the values of a tile, `each` per pixel, into the rows of a window.
-fn put<T: Copy>(values: &[T], each: usize, window: Window, place: TilePlace, rows: &mut [T]) {
+fn copy_rows<T: Copy>(values: &[T], each: usize, window: Window, place: TilePlace, rows: &mut [T]) {
     let length = place.width as usize * each;
     for (row, values) in (0..place.height).zip(values.chunks_exact(length)) {
         let first = place.pixel(window, row * place.width) * each;

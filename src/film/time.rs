@@ -3,7 +3,7 @@
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Seconds of a day.
-const DAY: u64 = 86_400;
+const DAY_SECONDS: u64 = 86_400;
 
 /// Formats a time in UTC as `YYYY:MM:DD hh:mm:ss` (OpenEXR, *Standard Attributes*, `capDate`). A time before 1970
 /// becomes the first second of that year.
@@ -14,7 +14,7 @@ pub(super) fn cap_date(time: SystemTime) -> String {
     let seconds = time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     let (hour, minute, second) = (seconds / 3600 % 24, seconds / 60 % 60, seconds % 60);
     // Days since 0000-03-01. An era has 400 years.
-    let days = seconds / DAY + 719_468;
+    let days = seconds / DAY_SECONDS + 719_468;
     let (era, day) = (days / 146_097, days % 146_097);
     let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
     let day = day - (365 * year + year / 4 - year / 100);
@@ -47,7 +47,7 @@ mod tests {
     fn every_day_follows_the_one_before() {
         let mut last = String::new();
         for day in 0..200 * 366 {
-            let date = cap_date(UNIX_EPOCH + Duration::from_secs(day * DAY));
+            let date = cap_date(UNIX_EPOCH + Duration::from_secs(day * DAY_SECONDS));
             assert!(date > last, "{last} and then {date}");
             last = date;
         }

@@ -2,7 +2,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use super::toward_ball::TowardBall;
-use super::{Beam, EmissionMap, EmissionPoint, KnownParts, LeSample, LightBounds, LightParts, LightSample};
+use super::{Beam, EmissionMap, EmissionPoint, LeSample, LightBounds, LightParts, LightSample, MeshPartsCache};
 use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Distribution2d, Ray};
 use crate::shape::{
     Ball, Coordinates, Density, Intersection, Shape, ShapeSample, Sides, Sphere, SurfacePoint, TexturedShape,
@@ -28,7 +28,7 @@ pub struct Area<S> {
     /// The parts of a shape that has several. Sampling chooses one of them.
     parts: Option<LightParts>,
     /// The box of a closed shape. From outside of it, no back faces are visible.
-    closed: Option<Bounds>,
+    closed_bounds: Option<Bounds>,
     /// The unit normals of all that is visible of a sphere, if that is a small part.
     visible_cap: Option<Cone>,
 }
@@ -43,11 +43,11 @@ pub struct ShownImage {
 }
 
 /// Largest 1 - cos of a cap that is sampled instead of the cone to the whole sphere: an eighth of the sphere.
-const SMALL: f64 = 0.25;
+const MAX_CAP: f64 = 0.25;
 /// Fewest unit normals from which a cap is known well enough.
-const ENOUGH: usize = 64;
+const MIN_NORMALS: usize = 64;
 /// Probability of sampling a lamp that shows an image by the image's brightness, and not evenly over its visible part.
-const BY_IMAGE: f64 = 0.75;
+const IMAGE_PROBABILITY: f64 = 0.75;
 
 impl<S> Area<S> {
     /// Creates the light of an object, with the image that it shows. Parts of known meshes are shared.
@@ -58,15 +58,15 @@ impl<S> Area<S> {
         sides: Sides,
         is_sampled: bool,
         image: Option<ShownImage>,
-        known: &mut KnownParts,
+        cache: &mut MeshPartsCache,
     ) -> Self {
         let parts = match image.as_ref().and_then(|image| image.map.as_ref()) {
             _ if !is_sampled => None,
-            Some(map) => LightParts::of(&shape, |part| map.worth(part)),
-            None => LightParts::even(&shape, known),
+            Some(map) => LightParts::of(&shape, |part| map.part_weight(part)),
+            None => LightParts::of_even_emitter(&shape, cache),
         };
-        let closed = if shape.is_closed() { shape.bounds() } else { None };
-        Self { shape, object, radiance, sides, is_sampled, image, parts, closed, visible_cap: None }
+        let closed_bounds = if shape.is_closed() { shape.bounds() } else { None };
+        Self { shape, object, radiance, sides, is_sampled, image, parts, closed_bounds, visible_cap: None }
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Area<T> {
@@ -78,13 +78,13 @@ impl<S> Area<S> {
             is_sampled: self.is_sampled,
             image: self.image.clone(),
             parts: self.parts.clone(),
-            closed: self.closed,
+            closed_bounds: self.closed_bounds,
             visible_cap: self.visible_cap,
         }
     }
 
     /// Returns whether learning its visible cap could help: for a sampled sphere that emits evenly.
-    pub fn may_show_a_cap(&self) -> bool {
+    pub fn can_learn_visible_cap(&self) -> bool {
         self.is_sampled && matches!(*self.shape, Shape::Sphere(_)) && self.image.is_none()
     }
 
@@ -107,13 +107,13 @@ impl<S> Area<S> {
     /// rim makes rare bright samples, which cost more than some samples that see nothing.
     pub fn learn_visible_cap(&mut self, normals: &[DVec3]) {
         let margin = 1.1 + 4.0 / (normals.len() as f64).sqrt();
-        let cap = if normals.len() < ENOUGH { None } else { Cone::around(normals) };
+        let cap = if normals.len() < MIN_NORMALS { None } else { Cone::around(normals) };
         let wider = cap.map(|cap| Cone { one_minus_cos: cap.one_minus_cos * margin, ..cap });
-        self.visible_cap = wider.filter(|cap| cap.one_minus_cos < SMALL);
+        self.visible_cap = wider.filter(|cap| cap.one_minus_cos < MAX_CAP);
     }
 
     /// Returns the sphere and its visible cap, if that is small.
-    fn seen_cap(&self) -> Option<(&Sphere, &Cone)> {
+    fn sphere_and_cap(&self) -> Option<(&Sphere, &Cone)> {
         match &*self.shape {
             Shape::Sphere(sphere) => Some((sphere, self.visible_cap.as_ref()?)),
             _ => None,
@@ -121,8 +121,8 @@ impl<S> Area<S> {
     }
 
     /// Returns whether a ray may hit the back of a part first. From outside of a closed body it never does.
-    fn shows_backs(&self, from: DVec3) -> bool {
-        self.sides == Sides::Both && self.closed.is_none_or(|bounds| bounds.contains(from))
+    fn has_visible_backs(&self, from: DVec3) -> bool {
+        self.sides == Sides::Both && self.closed_bounds.is_none_or(|bounds| bounds.contains(from))
     }
 
     /// Returns whether a part or a cell is chosen first, which uses up digits of a random number.
@@ -131,11 +131,11 @@ impl<S> Area<S> {
     }
 
     fn sample(&self, from: DVec3, normal: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
-        if let Some((sphere, cap)) = self.seen_cap() {
+        if let Some((sphere, cap)) = self.sphere_and_cap() {
             return sphere.sample_cap(cap, from, u);
         }
         let Some(parts) = &self.parts else { return self.sample_part(None, from, u) };
-        let part = parts.sample(from, normal, self.shows_backs(from), u[0])?;
+        let part = parts.sample(from, normal, self.has_visible_backs(from), u[0])?;
         Some(self.sample_part(Some(part.index as u32), from, [part.u, u[1]])?.times(part.probability))
     }
 
@@ -146,14 +146,14 @@ impl<S> Area<S> {
             None => self.shape.sample(from, [u, v]),
         };
         let Some((surface, cells)) = self.cells(part.unwrap_or(0)) else { return evenly(u) };
-        let sample = if u < BY_IMAGE {
-            let place = cells.sample_place([u / BY_IMAGE, v]);
+        let sample = if u < IMAGE_PROBABILITY {
+            let place = cells.sample_point([u / IMAGE_PROBABILITY, v]);
             let point = surface.point_at(part.unwrap_or(0), place)?;
             let is_behind = surface.is_behind(&point, from);
             let sample = ShapeSample::along(point.position - from).filter(|_| !is_behind)?;
             part.map_or(sample, |part| sample.with_part(part))
         } else {
-            evenly((u - BY_IMAGE) / (1.0 - BY_IMAGE))?
+            evenly((u - IMAGE_PROBABILITY) / (1.0 - IMAGE_PROBABILITY))?
         };
         Some(ShapeSample { density: None, ..sample })
     }
@@ -167,11 +167,11 @@ impl<S> Area<S> {
         };
         let Some((surface, cells)) = self.cells(intersection.part) else { return evenly };
         let point = self.shape.point(ray, intersection);
-        let of_image = surface.place(intersection, point.position).map_or(0.0, |place| {
+        let image_pdf = surface.place(intersection, point.position).map_or(0.0, |place| {
             Density::Area(cells.density(place.at) / place.area)
                 .toward(intersection.t, point.normal.dot(ray.direction).abs())
         });
-        BY_IMAGE * of_image + (1.0 - BY_IMAGE) * evenly
+        IMAGE_PROBABILITY * image_pdf + (1.0 - IMAGE_PROBABILITY) * evenly
     }
 
     /// Samples the light, and rejects samples that another part of it occludes.
@@ -203,7 +203,7 @@ impl<S> Area<S> {
             return None;
         }
         let pdf = match sample.density {
-            Some(density) => usable(density.toward(intersection.t, cos.abs()))?,
+            Some(density) => valid_pdf(density.toward(intersection.t, cos.abs()))?,
             None => self.pdf_at(&ray, normal, &intersection)?,
         };
         let uv = self.image.as_ref().map_or([0.0; 2], |image| {
@@ -216,11 +216,11 @@ impl<S> Area<S> {
     /// Returns the pdf per steradian with which the light is sampled from a surface with the given unit normal, along a
     /// ray that first hits it at `intersection`; `None` if the pdf is 0, or if the light is seen exactly edge-on.
     pub(super) fn pdf_at(&self, ray: &Ray, normal: DVec3, intersection: &Intersection) -> Option<f64> {
-        usable(match (self.seen_cap(), &self.parts) {
+        valid_pdf(match (self.sphere_and_cap(), &self.parts) {
             (Some((sphere, cap)), _) => sphere.pdf_cap(cap, ray, intersection.t),
             (None, None) => self.pdf_part(ray, intersection),
             (None, Some(parts)) => {
-                let two_sided = self.shows_backs(ray.origin);
+                let two_sided = self.has_visible_backs(ray.origin);
                 let probability = parts.probability(intersection.part, ray.origin, normal, two_sided);
                 if probability == 0.0 { 0.0 } else { probability * self.pdf_part(ray, intersection) }
             }
@@ -239,11 +239,11 @@ impl<S> Area<S> {
 
     /// Returns a ball around the visible part, and the largest area that is seen of it; `None` for an infinite shape.
     pub fn visible_part(&self) -> Option<(Ball, f64)> {
-        let own = self.shape.ball()?;
+        let own_ball = self.shape.ball()?;
         let size = LightBounds::of_shape(&self.shape, self.sides == Sides::Both)?.intensity;
-        let Some(Cone { axis, one_minus_cos }) = self.visible_cap else { return Some((own, size)) };
+        let Some(Cone { axis, one_minus_cos }) = self.visible_cap else { return Some((own_ball, size)) };
         let [cos, sin] = [1.0 - one_minus_cos, (one_minus_cos * (2.0 - one_minus_cos)).sqrt()];
-        let part = Ball { center: own.center + axis * (own.radius * cos), radius: own.radius * sin };
+        let part = Ball { center: own_ball.center + axis * (own_ball.radius * cos), radius: own_ball.radius * sin };
         Some((part, PI * part.radius * part.radius))
     }
 
@@ -254,11 +254,12 @@ impl<S> Area<S> {
 
     pub(super) fn beam(&self, ball: &Ball) -> Beam {
         let size = self.visible_part().filter(|_| self.sends_photons()).map_or(0.0, |(_, size)| size);
-        let own = self.shape.ball();
-        let from = own.map_or(ball.center, |own| own.center);
-        let is_apart = own.is_some_and(|own| (own.center - ball.center).length() > own.radius + ball.radius);
+        let own_ball = self.shape.ball();
+        let from = own_ball.map_or(ball.center, |own_ball| own_ball.center);
+        let is_outside_ball =
+            own_ball.is_some_and(|own_ball| (own_ball.center - ball.center).length() > own_ball.radius + ball.radius);
         let flux = size * TAU * ball.cone_from(from).one_minus_cos;
-        Beam { ball: *ball, cone: Cone::ALL, opening: None, flux, is_apart }
+        Beam { ball: *ball, cone: Cone::ALL, opening: None, flux, is_outside_ball }
     }
 
     /// Samples a photon from a point to the ball: in the cone that the ball subtends or, from inside, by the cosine.
@@ -276,25 +277,25 @@ impl<S> Area<S> {
     pub(super) fn pdf_le(&self, ball: &Ball, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         let Some(EmissionPoint { point, density, .. }) = &sample.surface else { return 0.0 };
         let along = self.toward(ball, point).pdf(sample.ray.direction, guide);
-        let of_point = match (density, self.seen_cap()) {
+        let point_pdf = match (density, self.sphere_and_cap()) {
             (Some(density), _) => *density,
             (None, Some((sphere, cap))) => sphere.pdf_cap_emission(cap, ball, point),
             (None, None) => self.shape.pdf_emission(ball, point),
         };
-        along * of_point
+        along * point_pdf
     }
 
     fn toward<'a>(&self, ball: &'a Ball, point: &SurfacePoint) -> TowardBall<'a> {
-        TowardBall { ball, from: point.position, normal: point.normal, front: self.front() }
+        TowardBall { ball, from: point.position, normal: point.normal, front_probability: self.front_probability() }
     }
 
     /// Samples a point from which light may reach a ball.
     fn sample_emission(&self, ball: &Ball, u: [f64; 2]) -> Option<EmissionPoint> {
-        match (&self.image, self.seen_cap()) {
+        match (&self.image, self.sphere_and_cap()) {
             (Some(image), _) => self.sample_textured(&image.coordinates, u),
             (None, _) if matches!(*self.shape, Shape::Instance(_)) => self.sample_textured(&Coordinates::Mesh, u),
-            (None, Some((sphere, cap))) => Some(EmissionPoint::of_even(sphere.sample_cap_emission(cap, ball, u))),
-            (None, None) => Some(EmissionPoint::of_even(self.shape.sample_emission(ball, u)?)),
+            (None, Some((sphere, cap))) => Some(EmissionPoint::without_image(sphere.sample_cap_emission(cap, ball, u))),
+            (None, None) => Some(EmissionPoint::without_image(self.shape.sample_emission(ball, u)?)),
         }
     }
 
@@ -306,20 +307,20 @@ impl<S> Area<S> {
             self.parts.as_ref().map_or(whole, |parts| parts.sample_by_flux(u));
         let (part, cells) = (index as u32, self.cells(index as u32));
         let at = match &cells {
-            Some((_, cells)) if u < BY_IMAGE => cells.sample_place([u / BY_IMAGE, v]),
-            Some(_) => [(u - BY_IMAGE) / (1.0 - BY_IMAGE), v],
+            Some((_, cells)) if u < IMAGE_PROBABILITY => cells.sample_point([u / IMAGE_PROBABILITY, v]),
+            Some(_) => [(u - IMAGE_PROBABILITY) / (1.0 - IMAGE_PROBABILITY), v],
             None => [u, v],
         };
         let point = surface.point_at(part, at)?;
-        let share = cells.map_or(1.0, |(_, cells)| BY_IMAGE * cells.density(at) + 1.0 - BY_IMAGE);
+        let share = cells.map_or(1.0, |(_, cells)| IMAGE_PROBABILITY * cells.density(at) + 1.0 - IMAGE_PROBABILITY);
         let density = Some(probability * share / surface.area(part, at, point.position)?);
         Some(EmissionPoint { point, uv: surface.coordinates_at(part, at)?, density })
     }
 
     /// Emits a cosine-distributed light path from a point of the surface, usually of the visible cap of a sphere.
     pub(super) fn emit(&self, [u0, u1, a, b]: [f64; 4]) -> Option<LeSample> {
-        let sample = self.sample_le(&EVERYWHERE, [a, b], [u0, u1])?;
-        let factor = sample.factor / self.pdf_le(&EVERYWHERE, &sample, |_| 1.0);
+        let sample = self.sample_le(&INFINITE_BALL, [a, b], [u0, u1])?;
+        let factor = sample.factor / self.pdf_le(&INFINITE_BALL, &sample, |_| 1.0);
         (factor > 0.0 && factor.is_finite()).then_some(LeSample { factor, ..sample })
     }
 
@@ -334,21 +335,21 @@ impl<S> Area<S> {
     }
 
     /// Returns the probability with which a point inside the ball that photons are sent to sends one from its front.
-    fn front(&self) -> f64 {
+    fn front_probability(&self) -> f64 {
         match (self.sides, self.shape.is_closed()) {
             (Sides::Front, _) => 1.0,
-            (Sides::Both, true) => OUTWARD,
+            (Sides::Both, true) => OUTWARD_PROBABILITY,
             (Sides::Both, false) => 0.5,
         }
     }
 }
 
 /// A ball that contains everything.
-const EVERYWHERE: Ball = Ball { center: DVec3::ZERO, radius: f64::INFINITY };
+const INFINITE_BALL: Ball = Ball { center: DVec3::ZERO, radius: f64::INFINITY };
 
 /// Probability that a photon leaves a closed lamp from its outer side, where an object is built around the lamp.
-const OUTWARD: f64 = 0.875;
+const OUTWARD_PROBABILITY: f64 = 0.875;
 
-fn usable(pdf: f64) -> Option<f64> {
+fn valid_pdf(pdf: f64) -> Option<f64> {
     Some(pdf).filter(|pdf| pdf.is_finite() && *pdf > 0.0)
 }

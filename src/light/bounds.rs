@@ -58,17 +58,17 @@ impl LightGroup {
     pub const EMPTY: Self = Self { bounds: Bounds::EMPTY, normals: Bounds::EMPTY, two_sided: false, intensity: 0.0 };
 
     /// Returns the group with one more light.
-    pub fn and(&self, light: &LightBounds) -> Self {
+    pub fn with_light(&self, light: &LightBounds) -> Self {
         let normals = match light.normal {
             Some(normal) => Bounds::around([normal]),
             None => Bounds { min: DVec3::NEG_ONE, max: DVec3::ONE },
         };
         let LightBounds { bounds, two_sided, intensity, .. } = *light;
-        self.with(&Self { bounds, normals, two_sided, intensity })
+        self.union(&Self { bounds, normals, two_sided, intensity })
     }
 
     /// Returns both groups as one.
-    pub fn with(&self, other: &Self) -> Self {
+    pub fn union(&self, other: &Self) -> Self {
         Self {
             bounds: self.bounds.union(other.bounds),
             normals: self.normals.union(other.normals),
@@ -87,24 +87,24 @@ impl LightGroup {
         let edges = self.bounds.size();
         let area = edges.x * edges.y + edges.y * edges.z + edges.z * edges.x;
         // Lamps on a line or in a point have no area: the lengths of their boxes tell them apart.
-        self.intensity * (area + 1e-6 * edges.length_squared()) * orientations(self.least_cosine())
+        self.intensity * (area + 1e-6 * edges.length_squared()) * orientation_measure(self.min_cosine())
     }
 
     /// Returns a lower bound for the cosine between the middle of all normals and any of them.
     ///
     /// A unit vector n no farther than r from c has r^2 >= 1 + |c|^2 - 2 c . n.
-    fn least_cosine(&self) -> f64 {
+    fn min_cosine(&self) -> f64 {
         let center = self.normals.center();
         let corner = self.normals.max - center;
         let length = center.length();
-        let least = 0.5 * (1.0 + length * length - corner.length_squared()) / length;
-        if least > -1.0 { least.min(1.0) } else { -1.0 }
+        let cosine_bound = 0.5 * (1.0 + length * length - corner.length_squared()) / length;
+        if cosine_bound > -1.0 { cosine_bound.min(1.0) } else { -1.0 }
     }
 }
 
 /// Returns the paper's measure of orientations within an angle of an axis, given by its cosine, for lights whose
 /// emission falls off with the cosine. The integral is solved for angles below and above a right angle.
-fn orientations(cos: f64) -> f64 {
+fn orientation_measure(cos: f64) -> f64 {
     let sin = (1.0 - cos * cos).sqrt();
     if cos >= 0.0 {
         2.0 * PI - PI * cos + 0.5 * PI * PI * sin

@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::{Beam, BrightPart, LeSample, LightSample, Opening, Panorama};
-use crate::math::{DMat3, DVec3, Ray, cosine_about, unit};
+use crate::math::{DMat3, DVec3, Ray, sample_cosine_about, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::{Curve, CurveKind, Draw, Lanes, Placement, Quantity, Table, Texture};
 
@@ -55,7 +55,7 @@ impl SkyPolarization {
 pub struct Sky<S> {
     panorama: Arc<Panorama>,
     /// The rotation from world to image.
-    turn: DMat3,
+    to_image: DMat3,
     /// The image's colors as factors on white.
     colors: S,
 }
@@ -65,7 +65,7 @@ impl Sky<Curve> {
     pub fn new(panorama: Panorama, rotation: DMat3) -> Self {
         let texture = Texture { image: panorama.image.clone(), placement: Placement::default() };
         let colors = CurveKind::Texture(texture).into();
-        Self { panorama: Arc::new(panorama), turn: rotation.transpose(), colors }
+        Self { panorama: Arc::new(panorama), to_image: rotation.transpose(), colors }
     }
 }
 
@@ -73,7 +73,7 @@ impl<S> Environment<S> {
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Environment<T> {
         let image = self.image.as_ref().map(|sky| Sky {
             panorama: sky.panorama.clone(),
-            turn: sky.turn,
+            to_image: sky.to_image,
             colors: convert(Quantity::Emission, &sky.colors),
         });
         let polarization = self.polarization;
@@ -85,10 +85,10 @@ impl<S> Environment<S> {
         let (direction, pdf) = match &self.image {
             Some(sky) => {
                 let (direction, pdf) = sky.panorama.sample(u);
-                (unit(sky.turn.transpose() * direction), pdf)
+                (unit(sky.to_image.transpose() * direction), pdf)
             }
             None => {
-                let direction = cosine_about(normal, u);
+                let direction = sample_cosine_about(normal, u);
                 (direction, self.pdf(direction, normal))
             }
         };
@@ -98,25 +98,25 @@ impl<S> Environment<S> {
     /// Returns the pdf per steradian with which `sample_li` draws a direction at a surface with the given unit normal.
     pub(super) fn pdf(&self, direction: DVec3, normal: DVec3) -> f64 {
         match &self.image {
-            Some(sky) => sky.panorama.pdf(sky.turn * direction),
+            Some(sky) => sky.panorama.pdf(sky.to_image * direction),
             None => direction.dot(normal).max(0.0) / PI,
         }
     }
 
     /// Returns the bright part of its image, from which photons are sent; `None` for a polarized sky.
-    pub fn bright(&self) -> Option<&BrightPart> {
-        self.image.as_ref().filter(|_| self.polarization.is_none())?.panorama.bright.as_ref()
+    pub fn bright_part(&self) -> Option<&BrightPart> {
+        self.image.as_ref().filter(|_| self.polarization.is_none())?.panorama.bright_part.as_ref()
     }
 
     /// Returns whether a direction lies in the bright part from which photons are sent.
     pub(super) fn is_bright(&self, direction: DVec3) -> bool {
-        let is_bright = |sky: &Sky<S>| sky.panorama.is_bright(sky.turn * direction);
+        let is_bright = |sky: &Sky<S>| sky.panorama.is_bright(sky.to_image * direction);
         self.polarization.is_none() && self.image.as_ref().is_some_and(is_bright)
     }
 
     /// Returns whether its image is not black in a direction.
     pub fn shines_toward(&self, direction: DVec3) -> bool {
-        let color = |sky: &Sky<S>| sky.panorama.color(sky.turn * direction);
+        let color = |sky: &Sky<S>| sky.panorama.color(sky.to_image * direction);
         self.image.as_ref().is_none_or(|sky| color(sky).iter().any(|&x| x > 0.0))
     }
 
@@ -124,12 +124,12 @@ impl<S> Environment<S> {
     pub fn sample_bright(&self, u: [f64; 2]) -> Option<(DVec3, f64)> {
         let sky = self.image.as_ref()?;
         let (direction, pdf) = sky.panorama.sample_bright(u)?;
-        Some((unit(sky.turn.transpose() * direction), pdf))
+        Some((unit(sky.to_image.transpose() * direction), pdf))
     }
 
     /// Returns the beam of the bright part.
     pub(super) fn beam(&self, ball: &Ball) -> Option<Beam> {
-        Some(Beam::from_sky(ball, self.bright()?.irradiance))
+        Some(Beam::from_sky(ball, self.bright_part()?.irradiance))
     }
 
     /// Returns the beam through an opening, of all light except that of the bright part; `None` for a polarized sky.
@@ -166,13 +166,13 @@ impl Environment<Table> {
     pub(super) fn toward<const N: usize>(&self, draw: &Draw<N>, direction: DVec3) -> Lanes<N> {
         let level = draw.read(&self.radiance);
         let Some(sky) = &self.image else { return level };
-        level * draw.tint(&sky.colors, summed(sky.panorama.color(sky.turn * direction)))
+        level * draw.tint(&sky.colors, rebuild_from_sums(sky.panorama.color(sky.to_image * direction)))
     }
 }
 
 /// Rebuilds a color as the sum of white, the excess of two channels over it, and the excess of one channel over those.
 /// Images in three bands have the bits of such sums.
-fn summed(color: [f32; 3]) -> [f32; 3] {
+fn rebuild_from_sums(color: [f32; 3]) -> [f32; 3] {
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| color[a].total_cmp(&color[b]));
     let [least, middle, most] = order.map(|channel| color[channel]);

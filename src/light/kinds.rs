@@ -70,7 +70,7 @@ impl<S> Light<S> {
         match self {
             Self::Area(area) => area.sample_li(from, normal, u),
             Self::Point(point) => LightSample::of_point(from, point.position.into(), |_| 1.0),
-            Self::Spot(spot) => LightSample::of_point(from, spot.position.into(), |direction| spot.part(direction)),
+            Self::Spot(spot) => LightSample::of_point(from, spot.position.into(), |direction| spot.falloff(direction)),
             Self::Environment(environment) => environment.sample_li(from, normal, u),
             Self::Sun(sun) => Some(sun.sample_li(from, u)),
         }
@@ -104,7 +104,7 @@ impl<S> Light<S> {
     pub fn sends_photons(&self) -> bool {
         match self {
             Self::Area(area) => area.sends_photons(),
-            Self::Environment(environment) => environment.bright().is_some(),
+            Self::Environment(environment) => environment.bright_part().is_some(),
             Self::Point(_) | Self::Spot(_) | Self::Sun(_) => true,
         }
     }
@@ -135,7 +135,7 @@ impl<S> Light<S> {
     /// other lights.
     pub(crate) fn bright_direction(&self, u: [f64; 2]) -> Option<DVec3> {
         match self {
-            Self::Sun(sun) => Some(sun.middle()),
+            Self::Sun(sun) => Some(sun.center_direction()),
             Self::Environment(environment) => Some(environment.sample_bright(u)?.0),
             Self::Area(_) | Self::Point(_) | Self::Spot(_) => None,
         }
@@ -166,7 +166,7 @@ impl<S> Light<S> {
         match self {
             Self::Area(area) => area.sample_le(&beam.ball, guide_uv, u),
             Self::Point(point) => LeSample::of_point(point.position.into(), &beam.cone, guide_uv, |_| 1.0),
-            Self::Spot(spot) => LeSample::of_point(spot.position.into(), &beam.cone, guide_uv, |way| spot.part(way)),
+            Self::Spot(spot) => LeSample::of_point(spot.position.into(), &beam.cone, guide_uv, |way| spot.falloff(way)),
             Self::Sun(sun) => sun.sample_le(&beam.ball, guide_uv, u),
             Self::Environment(environment) => environment.sample_le(beam, guide_uv, u),
         }
@@ -245,7 +245,7 @@ impl Light<Table> {
     }
 
     /// Returns the mean brightness of the image on a lamp, which may be a small part of the image file.
-    pub fn shown(&self) -> Option<f64> {
+    pub fn image_brightness(&self) -> Option<f64> {
         if let Self::Area(area) = self { area.emission_map().map(|map| map.mean) } else { None }
     }
 
@@ -268,7 +268,7 @@ impl Light<Table> {
             Self::Spot(spot) => LightBounds::of_point(spot.position.into()),
             Self::Environment(_) | Self::Sun(_) => return None,
         };
-        let brightness = match self.shown() {
+        let brightness = match self.image_brightness() {
             Some(mean) => mean * self.emission().range().1.max(0.0),
             None => self.emission().brightness(),
         };

@@ -29,7 +29,7 @@ pub use environment::{Environment, Sky, SkyPolarization};
 pub use kinds::{Light, LightId};
 pub use opening::Opening;
 pub use panorama::{BrightPart, Panorama};
-pub use parts::{KnownParts, LightParts};
+pub use parts::{LightParts, MeshPartsCache};
 pub use point::Point;
 pub use sample::{EmissionPoint, LeSample, LightSample};
 pub use sampler::{LightSampler, SampledLight};

@@ -3,7 +3,7 @@ use std::f64::consts::{PI, TAU};
 use serde::{Deserialize, Serialize};
 
 use super::toward_ball::TowardBall;
-use crate::math::{DVec3, Ray, cosine_about, unit};
+use crate::math::{DVec3, Ray, sample_cosine_about, unit};
 use crate::shape::Ball;
 
 /// A rectangle through which a sky's light enters a room.
@@ -33,9 +33,9 @@ impl Opening {
 
     /// Estimates the solid angle in steradians that it subtends at a point.
     pub fn solid_angle_from(&self, point: DVec3) -> f64 {
-        let way = self.center - point;
-        let squared = way.length_squared();
-        (self.area() * self.normal().dot(way).abs() / (squared * squared.sqrt())).min(TAU)
+        let to_center = self.center - point;
+        let distance_squared = to_center.length_squared();
+        (self.area() * self.normal().dot(to_center).abs() / (distance_squared * distance_squared.sqrt())).min(TAU)
     }
 
     /// Returns its point for a place of the unit square.
@@ -46,7 +46,7 @@ impl Opening {
 
     /// Returns how a photon leaves one of its points toward a ball.
     pub(super) fn toward<'a>(&self, ball: &'a Ball, from: DVec3) -> TowardBall<'a> {
-        TowardBall { ball, from, normal: self.normal(), front: 1.0 }
+        TowardBall { ball, from, normal: self.normal(), front_probability: 1.0 }
     }
 
     /// Samples the ray of a photon from one of its points toward a ball.
@@ -81,15 +81,15 @@ impl Opening {
     /// its line over all of them, per unit of area across it and steradian; `None` if there are no openings.
     pub fn ray_through(openings: &[Self], [a, b, c, d]: [f64; 4]) -> Option<(Ray, f64)> {
         let all: f64 = openings.iter().map(Self::area).sum();
-        let mut left = a * all;
+        let mut remaining = a * all;
         let is_chosen = |opening: &&Self| {
-            left -= opening.area();
-            left < 0.0
+            remaining -= opening.area();
+            remaining < 0.0
         };
         let chosen = openings.iter().find(is_chosen).or(openings.last())?;
         // The random number is reused: it is uniform within the area of the chosen opening.
-        let a = (1.0 + left / chosen.area()).clamp(0.0, 1.0);
-        let ray = Ray { origin: chosen.point([a, b]), direction: cosine_about(chosen.normal(), [c, d]) };
+        let a = (1.0 + remaining / chosen.area()).clamp(0.0, 1.0);
+        let ray = Ray { origin: chosen.point([a, b]), direction: sample_cosine_about(chosen.normal(), [c, d]) };
         let entered = openings.iter().filter(|opening| opening.is_entered_by(&ray)).count();
         Some((ray, entered as f64 / (PI * all)))
     }
@@ -110,7 +110,7 @@ mod tests {
 
     /// The measure of lines that enter a rectangle is pi times its area. For both, lines through both count once.
     #[test]
-    fn lines_through_openings_are_drawn_as_densely_as_is_said() {
+    fn lines_through_openings_are_drawn_with_the_stated_density() {
         let openings = openings();
         let side = 64;
         let mid = |i: u32| (f64::from(i) + 0.5) / f64::from(side);
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_through_an_opening_wherever_its_ray_begins() {
+    fn a_line_crosses_an_opening_wherever_its_ray_begins() {
         let opening = openings()[0];
         for (place, direction, is_through) in [
             ([0.1, -0.2, 3.0], [0.0, 0.0, 1.0], true),

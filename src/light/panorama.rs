@@ -23,14 +23,14 @@ pub struct Panorama {
     /// Cosine of the polar angle of the upper edge of each row, and of the lower edge of the last.
     edges: Vec<f64>,
     /// The brightest part, if it is much brighter than the rest.
-    pub(super) bright: Option<BrightPart>,
+    pub(super) bright_part: Option<BrightPart>,
 }
 
 /// The texels of an image far brighter than its mean, such as a sun or lamps, if they fill a small part of the sky.
 #[derive(Clone, Debug)]
 pub struct BrightPart {
     /// The brightness that all of them exceed.
-    above: f64,
+    threshold: f64,
     texels: Vec<u32>,
     by_light: Distribution,
     /// Irradiance at normal incidence, in units of the image.
@@ -43,43 +43,44 @@ pub struct BrightPart {
 
 /// Least weight of a texel, relative to sampling by brightness alone. Texels dimmer than the mean are not left out,
 /// because bounces do not find them everywhere.
-const PLAINLY: f64 = 0.1;
+const MIN_WEIGHT: f64 = 0.1;
 /// Least brightness of a texel of the bright part, as a multiple of the mean.
-const BRIGHT: f64 = 8.0;
+const BRIGHT_OVER_MEAN: f64 = 8.0;
 /// Columns wrap around. Beyond the top and bottom rows lie those rows again.
-const AROUND: [Wrap; 2] = [Wrap::Repeat, Wrap::Clamp];
+const EDGE_WRAP: [Wrap; 2] = [Wrap::Repeat, Wrap::Clamp];
 /// The largest solid angle of the bright part, and the share of the light below which it is not treated apart.
-const MOST_SOLID_ANGLE: f64 = 0.5;
-const LEAST_SHARE: f64 = 0.02;
+const MAX_SOLID_ANGLE: f64 = 0.5;
+const MIN_SHARE: f64 = 0.02;
 
 impl BrightPart {
     /// Finds the bright part among texels of known brightness and solid angle; `None` if it sends too little of the
     /// light.
     fn new(levels: &[f64], mean: f64, solid_angle: impl Fn(u32) -> f64) -> Option<Self> {
         let level = |texel: u32| levels[texel as usize];
-        let mut texels: Vec<u32> = (0..levels.len() as u32).filter(|&texel| level(texel) > BRIGHT * mean).collect();
-        let mut by_level = texels.clone();
-        by_level.sort_by(|&a, &b| level(b).total_cmp(&level(a)));
-        let mut all = 0.0;
-        let too_many = by_level.into_iter().find(|&texel| {
-            all += solid_angle(texel);
-            all > MOST_SOLID_ANGLE
+        let mut texels: Vec<u32> =
+            (0..levels.len() as u32).filter(|&texel| level(texel) > BRIGHT_OVER_MEAN * mean).collect();
+        let mut brightest_first = texels.clone();
+        brightest_first.sort_by(|&a, &b| level(b).total_cmp(&level(a)));
+        let mut covered = 0.0;
+        let too_many = brightest_first.into_iter().find(|&texel| {
+            covered += solid_angle(texel);
+            covered > MAX_SOLID_ANGLE
         });
-        let above = too_many.map_or(BRIGHT * mean, level);
-        texels.retain(|&texel| level(texel) > above);
-        let [mut irradiance, mut squares, mut whole] = [0.0; 3];
+        let threshold = too_many.map_or(BRIGHT_OVER_MEAN * mean, level);
+        texels.retain(|&texel| level(texel) > threshold);
+        let [mut irradiance, mut squares, mut total_solid_angle] = [0.0; 3];
         for &texel in &texels {
             let (level, solid_angle) = (level(texel), solid_angle(texel));
             irradiance += level * solid_angle;
             squares += level * level * solid_angle;
-            whole += solid_angle;
+            total_solid_angle += solid_angle;
         }
-        if irradiance <= LEAST_SHARE * 4.0 * PI * mean {
+        if irradiance <= MIN_SHARE * 4.0 * PI * mean {
             return None;
         }
         let by_light = Distribution::new(texels.iter().map(|&texel| level(texel) * solid_angle(texel)));
         let radiance = squares / irradiance;
-        Some(Self { above, texels, by_light, irradiance, solid_angle: whole, radiance })
+        Some(Self { threshold, texels, by_light, irradiance, solid_angle: total_solid_angle, radiance })
     }
 }
 
@@ -87,26 +88,27 @@ impl Panorama {
     /// Creates the panorama of an image whose numbers are finite and not negative. With `few_bounces`, bounces find
     /// little of its light, so directions are drawn by brightness alone.
     pub fn new(image: Arc<Image>, few_bounces: bool) -> Self {
-        let plainly = if few_bounces { 1.0 } else { PLAINLY };
+        let min_weight = if few_bounces { 1.0 } else { MIN_WEIGHT };
         let size @ [width, height] = [image.width(), image.height()];
         let edges: Vec<f64> = (0..=height).map(|row| libm::cos(PI * row as f64 / height as f64)).collect();
-        let by_row = |row: usize| edges[row] - edges[row + 1];
+        let row_weight = |row: usize| edges[row] - edges[row + 1];
         let level = |texel: usize| brightness(&image, [texel % width, texel / width]);
         let levels: Vec<f64> = (0..width * height).into_par_iter().with_min_len(1024).map(level).collect();
         let rows = levels.chunks(width).enumerate();
-        let total: f64 = rows.map(|(row, levels)| levels.iter().sum::<f64>() * by_row(row)).sum();
+        let total: f64 = rows.map(|(row, levels)| levels.iter().sum::<f64>() * row_weight(row)).sum();
         let mean = total / (2 * width) as f64;
         let weight = |[x, y]: [usize; 2]| {
             let level = levels[y * width + x];
-            (level - mean).max(plainly * level)
+            (level - mean).max(min_weight * level)
         };
-        let texels = Distribution2d::new(size, weight, by_row);
-        let bright = BrightPart::new(&levels, mean, |texel| TAU / width as f64 * by_row(texel as usize / width));
-        Self { image, mean, texels, edges, bright }
+        let texels = Distribution2d::new(size, weight, row_weight);
+        let bright_part =
+            BrightPart::new(&levels, mean, |texel| TAU / width as f64 * row_weight(texel as usize / width));
+        Self { image, mean, texels, edges, bright_part }
     }
 
     /// Returns where a direction lies in the image, in texels from its upper left corner.
-    fn place(&self, direction: DVec3) -> [f64; 2] {
+    fn texel_position(&self, direction: DVec3) -> [f64; 2] {
         let DVec3 { x, y, z } = direction;
         let u = 0.5 - libm::atan2(x, z) / TAU;
         // Taken from its tangent, the polar angle keeps its digits at the poles.
@@ -116,14 +118,14 @@ impl Panorama {
 
     /// Returns what is seen in a direction, in linear Rec.709.
     pub fn color(&self, direction: DVec3) -> [f32; 3] {
-        self.image.linear(self.place(direction), AROUND)
+        self.image.bilinear(self.texel_position(direction), EDGE_WRAP)
     }
 
     /// Samples a direction that is not yet turned into the world, and returns it with its pdf per steradian.
     pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, f64) {
         let [column, row] = self.texels.sample(u);
         let texel = [column.index, row.index];
-        (self.direction(texel, [column.u, row.u]), self.density(texel))
+        (self.direction(texel, [column.u, row.u]), self.texel_pdf(texel))
     }
 
     /// Returns the direction at a place of a texel.
@@ -139,24 +141,24 @@ impl Panorama {
     /// Returns whether a direction lies in the bright part.
     pub(super) fn is_bright(&self, direction: DVec3) -> bool {
         let level = || brightness(&self.image, self.texel_of(direction));
-        self.bright.as_ref().is_some_and(|bright| level() > bright.above)
+        self.bright_part.as_ref().is_some_and(|bright_part| level() > bright_part.threshold)
     }
 
     /// Samples a direction toward the bright part, and returns it with its pdf per steradian.
     pub(super) fn sample_bright(&self, [u, v]: [f64; 2]) -> Option<(DVec3, f64)> {
-        let bright = self.bright.as_ref()?;
-        let drawn = bright.by_light.sample(u);
-        let (texel, width) = (bright.texels[drawn.index] as usize, self.image.width());
+        let bright_part = self.bright_part.as_ref()?;
+        let drawn = bright_part.by_light.sample(u);
+        let (texel, width) = (bright_part.texels[drawn.index] as usize, self.image.width());
         let texel = [texel % width, texel / width];
-        Some((self.direction(texel, [drawn.u, v]), brightness(&self.image, texel) / bright.irradiance))
+        Some((self.direction(texel, [drawn.u, v]), brightness(&self.image, texel) / bright_part.irradiance))
     }
 
     /// Returns the pdf per steradian with which `sample` draws a direction.
     pub(super) fn pdf(&self, direction: DVec3) -> f64 {
-        self.density(self.texel_of(direction))
+        self.texel_pdf(self.texel_of(direction))
     }
 
-    fn density(&self, texel: [usize; 2]) -> f64 {
+    fn texel_pdf(&self, texel: [usize; 2]) -> f64 {
         self.texels.probability(texel) / self.solid_angle(texel[1])
     }
 
@@ -167,7 +169,7 @@ impl Panorama {
 
     /// Returns column and row of the texel that contains a direction.
     fn texel_of(&self, direction: DVec3) -> [usize; 2] {
-        let [x, y] = self.place(direction);
+        let [x, y] = self.texel_position(direction);
         [(x as usize).min(self.image.width() - 1), (y as usize).min(self.image.height() - 1)]
     }
 }
@@ -175,12 +177,12 @@ impl Panorama {
 /// Returns the mean over a texel of what it shows: it and its neighbors, weighted as by linear interpolation.
 fn brightness(image: &Image, [column, row]: [usize; 2]) -> f64 {
     const SHARES: [f64; 3] = [0.125, 0.75, 0.125];
-    let ([across, down], mut sum) = (AROUND, 0.0);
-    for (i, by_row) in SHARES.iter().enumerate() {
-        let row = down.entry((row + i) as isize - 1, image.height());
-        for (j, by_column) in SHARES.iter().enumerate() {
-            let texel = image.texel(across.entry((column + j) as isize - 1, image.width()), row);
-            sum += by_row * by_column * texel.iter().map(|&x| f64::from(x)).sum::<f64>() / 3.0;
+    let ([across, down], mut sum) = (EDGE_WRAP, 0.0);
+    for (i, row_weight) in SHARES.iter().enumerate() {
+        let row = down.index((row + i) as isize - 1, image.height());
+        for (j, column_weight) in SHARES.iter().enumerate() {
+            let texel = image.texel(across.index((column + j) as isize - 1, image.width()), row);
+            sum += row_weight * column_weight * texel.iter().map(|&x| f64::from(x)).sum::<f64>() / 3.0;
         }
     }
     sum
@@ -203,7 +205,7 @@ mod tests {
     fn directions_lie_where_the_convention_says() {
         let panorama = panorama(4, &[[1.0; 3]; 8]);
         let near = |direction: DVec3, expected: [f64; 2]| {
-            let [x, y] = panorama.place(direction);
+            let [x, y] = panorama.texel_position(direction);
             assert!((x - expected[0]).abs() < 1e-12 && (y - expected[1]).abs() < 1e-12, "{direction}: {x} {y}");
         };
         near(DVec3::Z, [2.0, 1.0]);
@@ -269,12 +271,12 @@ mod tests {
 
     /// Row L11 of the stability catalog.
     #[test]
-    fn l11_the_bright_part_is_drawn_by_its_light_and_met_where_it_is() {
+    fn l11_the_bright_part_is_sampled_by_its_light_and_found_where_it_is() {
         let (width, height) = (24, 12);
         let of = |i: usize| if i == 17 || i == 100 { 900.0 } else { (i % 5) as f32 };
         let texels: Vec<[f32; 3]> = (0..width * height).map(|i| [of(i); 3]).collect();
         let panorama = panorama(width, &texels);
-        let bright = panorama.bright.as_ref().expect("two texels are bright");
+        let bright_part = panorama.bright_part.as_ref().expect("two texels are bright");
         let (mut irradiance, mut solid_angle) = (0.0, 0.0);
         for texel in (0..width * height).map(|i| [i % width, i / width]) {
             let here = panorama.solid_angle(texel[1]);
@@ -283,9 +285,9 @@ mod tests {
                 solid_angle += here;
             }
         }
-        assert!((bright.irradiance / irradiance - 1.0).abs() < 1e-12, "{irradiance}");
-        assert!((bright.solid_angle / solid_angle - 1.0).abs() < 1e-12 && solid_angle < MOST_SOLID_ANGLE);
-        assert!(bright.radiance > 300.0 && bright.radiance < 900.0, "{}", bright.radiance);
+        assert!((bright_part.irradiance / irradiance - 1.0).abs() < 1e-12, "{irradiance}");
+        assert!((bright_part.solid_angle / solid_angle - 1.0).abs() < 1e-12 && solid_angle < MAX_SOLID_ANGLE);
+        assert!(bright_part.radiance > 300.0 && bright_part.radiance < 900.0, "{}", bright_part.radiance);
         // Every draw stands for the same irradiance, except for variation within a texel. Rows are 15 degrees high
         // here: their mean is that of linear interpolation by solid angle, while that of the table is by latitude.
         let mut sum = 0.0;
@@ -295,6 +297,6 @@ mod tests {
             sum += f64::from(panorama.color(direction)[0]) / pdf / 160_000.0;
         }
         assert!((sum / irradiance - 1.0).abs() < 0.02, "{sum} for {irradiance}");
-        assert!(self::panorama(width, &vec![[1.0; 3]; width * height]).bright.is_none());
+        assert!(self::panorama(width, &vec![[1.0; 3]; width * height]).bright_part.is_none());
     }
 }

@@ -1,7 +1,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::{Beam, LeSample};
-use crate::math::{Ray, ball_surface};
+use crate::math::{Ray, sample_sphere};
 use crate::shape::Ball;
 use crate::spectrum::Quantity;
 
@@ -26,11 +26,11 @@ impl<S> Point<S> {
 
     pub(super) fn beam(&self, ball: &Ball) -> Beam {
         let cone = ball.cone_from(self.position.into());
-        Beam { ball: *ball, cone, opening: None, flux: TAU * cone.one_minus_cos, is_apart: true }
+        Beam { ball: *ball, cone, opening: None, flux: TAU * cone.one_minus_cos, is_outside_ball: true }
     }
 
     pub(super) fn emit(&self, u: [f64; 2]) -> LeSample {
-        let ray = Ray { origin: self.position.into(), direction: ball_surface(u) };
+        let ray = Ray { origin: self.position.into(), direction: sample_sphere(u) };
         LeSample { ray, factor: 4.0 * PI, surface: None }
     }
 }

@@ -32,10 +32,10 @@ impl LightSample {
     /// or where it is dark.
     pub(super) fn of_point(from: &SurfacePoint, light: DVec3, part: impl Fn(DVec3) -> f64) -> Option<Self> {
         let ray = from.leave((light - from.position).try_normalize()?);
-        let squared = (light - ray.origin).length_squared();
+        let distance_squared = (light - ray.origin).length_squared();
         let part = part(-ray.direction);
-        let factor = part / squared;
-        let distance = squared.sqrt();
+        let factor = part / distance_squared;
+        let distance = distance_squared.sqrt();
         (part > 0.0).then_some(Self { ray, distance, object: None, part: None, pdf: None, factor, uv: [0.0; 2] })
     }
 }
@@ -64,7 +64,7 @@ pub struct EmissionPoint {
 
 impl EmissionPoint {
     /// Creates a point of a light that emits evenly.
-    pub(super) fn of_even(point: SurfacePoint) -> Self {
+    pub(super) fn without_image(point: SurfacePoint) -> Self {
         Self { point, uv: [0.0; 2], density: None }
     }
 }

@@ -10,9 +10,9 @@ use crate::spectrum::Table;
 pub struct LightSampler {
     tree: LightTree,
     /// Probability of choosing a light of the tree.
-    of_tree: f64,
+    tree_probability: f64,
     /// The tree, then each infinite light.
-    kinds: Distribution,
+    top_level: Distribution,
     /// The lights of the tree, then the infinite ones.
     lights: Vec<LightId>,
     /// Number of lights in the tree.
@@ -36,8 +36,8 @@ impl LightSampler {
         let sampled = || (0..lights.len()).filter(|&id| lights[id].is_sampled());
         let bounds = |id: LightId| Some((id, lights[id].bounds().filter(|light| light.intensity > 0.0)?));
         let (finite, bounds): (Vec<LightId>, Vec<LightBounds>) = sampled().filter_map(bounds).unzip();
-        let shining = sampled().map(|id| (id, lights[id].irradiance())).filter(|sky| sky.1 > 0.0);
-        let (infinite, irradiances): (Vec<LightId>, Vec<f64>) = shining.unzip();
+        let skies = sampled().map(|id| (id, lights[id].irradiance())).filter(|sky| sky.1 > 0.0);
+        let (infinite, irradiances): (Vec<LightId>, Vec<f64>) = skies.unzip();
         let weight = match (finite.is_empty(), infinite.is_empty()) {
             (true, _) => 0.0,
             (false, false) => irradiances.iter().sum(),
@@ -46,9 +46,9 @@ impl LightSampler {
         let mut places = vec![None; lights.len()];
         let all = [finite.as_slice(), &infinite].concat();
         all.iter().enumerate().for_each(|(place, &id)| places[id] = Some(place));
-        let kinds = Distribution::new(std::iter::once(weight).chain(irradiances));
-        let of_tree = kinds.probability(0);
-        Self { tree: LightTree::new(&bounds), of_tree, kinds, lights: all, finite: finite.len(), places }
+        let top_level = Distribution::new(std::iter::once(weight).chain(irradiances));
+        let tree_probability = top_level.probability(0);
+        Self { tree: LightTree::new(&bounds), tree_probability, top_level, lights: all, finite: finite.len(), places }
     }
 
     /// Returns the lights that may be sampled, in order.
@@ -61,24 +61,26 @@ impl LightSampler {
     /// Samples a light for a point on a surface with the given unit normal; `None` if the choice falls on the tree and
     /// none of its lights can reach the point.
     pub fn sample(&self, from: DVec3, normal: DVec3, u: f64) -> Option<SampledLight> {
-        if u < self.of_tree {
-            let drawn = self.tree.sample(from, normal, false, u / self.of_tree)?;
+        if u < self.tree_probability {
+            let drawn = self.tree.sample(from, normal, false, u / self.tree_probability)?;
             return Some(SampledLight {
                 light: self.lights[drawn.index],
-                probability: drawn.probability * self.of_tree,
+                probability: drawn.probability * self.tree_probability,
             });
         }
-        let kind = self.kinds.sample(u);
-        let light = *self.lights.get(self.finite + kind.index.checked_sub(1)?)?;
-        Some(SampledLight { light, probability: kind.probability })
+        let choice = self.top_level.sample(u);
+        let light = *self.lights.get(self.finite + choice.index.checked_sub(1)?)?;
+        Some(SampledLight { light, probability: choice.probability })
     }
 
     /// Returns the probability with which `sample` draws a light.
     pub fn probability(&self, light: LightId, from: DVec3, normal: DVec3) -> f64 {
         match self.places[light] {
             None => 0.0,
-            Some(place) if place < self.finite => self.of_tree * self.tree.probability(place, from, normal, false),
-            Some(place) => self.kinds.probability(place - self.finite + 1),
+            Some(place) if place < self.finite => {
+                self.tree_probability * self.tree.probability(place, from, normal, false)
+            }
+            Some(place) => self.top_level.probability(place - self.finite + 1),
         }
     }
 }

@@ -39,7 +39,7 @@ impl<S> Spot<S> {
 
     /// Returns the part of the intensity that leaves in a direction: 1 in the inner part of the cone, 0 outside of the
     /// cone, and 3 t^2 - 2 t^3 of the angle in between.
-    pub fn part(&self, direction: DVec3) -> f64 {
+    pub fn falloff(&self, direction: DVec3) -> f64 {
         let axis = DVec3::from(self.toward).normalize();
         let angle = libm::atan2(axis.cross(direction).length(), axis.dot(direction));
         let outer = 0.5 * self.cone_angle.to_radians();
@@ -60,23 +60,23 @@ impl<S> Spot<S> {
     /// Sends photons into the narrower of two cones: the spot's own, and the one that the ball subtends.
     pub(super) fn beam(&self, ball: &Ball) -> Beam {
         let (toward, own) = (ball.cone_from(self.position.into()), self.cone());
-        let half = |cone: &Cone| libm::acos((1.0 - cone.one_minus_cos).clamp(-1.0, 1.0));
-        let between = libm::acos(toward.axis.dot(own.axis).clamp(-1.0, 1.0));
-        let misses = !toward.is_all() && between > half(&toward) + half(&own);
+        let half_angle = |cone: &Cone| libm::acos((1.0 - cone.one_minus_cos).clamp(-1.0, 1.0));
+        let angle_between = libm::acos(toward.axis.dot(own.axis).clamp(-1.0, 1.0));
+        let misses = !toward.is_all() && angle_between > half_angle(&toward) + half_angle(&own);
         let cone = if own.one_minus_cos < toward.one_minus_cos { own } else { toward };
         Beam {
             ball: *ball,
             cone,
             opening: None,
             flux: if misses { 0.0 } else { TAU * cone.one_minus_cos },
-            is_apart: true,
+            is_outside_ball: true,
         }
     }
 
     pub(super) fn emit(&self, u: [f64; 2]) -> Option<LeSample> {
         let cone = self.cone();
         let direction = unit(cone.sample_uniform(u));
-        let factor = self.part(direction) / cone.uniform_pdf();
+        let factor = self.falloff(direction) / cone.uniform_pdf();
         let ray = Ray { origin: self.position.into(), direction };
         (factor > 0.0).then_some(LeSample { ray, factor, surface: None })
     }
@@ -91,7 +91,7 @@ mod tests {
         let spot = Spot { position: [0.0; 3], toward: [0.0, -2.0, 0.0], cone_angle: 60.0, blend: 0.5, intensity: () };
         let part = |spot: &Spot<()>, degrees: f64| {
             let (sin, cos) = libm::sincos(degrees.to_radians());
-            spot.part(DVec3::new(sin, -cos, 0.0))
+            spot.falloff(DVec3::new(sin, -cos, 0.0))
         };
         let at = |degrees: f64| part(&spot, degrees);
         assert_eq!([0.0, 14.9, 30.1, 90.0, 180.0].map(at), [1.0, 1.0, 0.0, 0.0, 0.0]);

@@ -53,7 +53,7 @@ impl<S> Sun<S> {
     }
 
     /// Returns the direction toward the center of the disc.
-    pub fn middle(&self) -> DVec3 {
+    pub fn center_direction(&self) -> DVec3 {
         self.disc().cone.axis
     }
 
@@ -64,10 +64,10 @@ impl<S> Sun<S> {
     }
 
     pub(super) fn sample_li(&self, from: &SurfacePoint, u: [f64; 2]) -> LightSample {
-        self.along(from.leave(self.sample(u)))
+        self.sample_along(from.leave(self.sample(u)))
     }
 
-    fn along(&self, ray: Ray) -> LightSample {
+    fn sample_along(&self, ray: Ray) -> LightSample {
         let (pdf, factor) = match self.angular_diameter {
             0.0 => (None, 1.0),
             // A sampled direction lies in the disc, even if rounding puts it beyond the rim of a very small one.
@@ -97,7 +97,7 @@ impl<S> Sun<S> {
     /// Samples a photon through a disc across the ball.
     pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         let ray = Beam::ray_from_sky(ball, self.sample(u), guide_uv)?;
-        let light = self.along(Ray { direction: -ray.direction, ..ray });
+        let light = self.sample_along(Ray { direction: -ray.direction, ..ray });
         Some(LeSample { ray, factor: light.factor / light.pdf.unwrap_or(1.0), surface: None })
     }
 }
@@ -108,7 +108,7 @@ mod tests {
     use crate::math::Frame;
 
     #[test]
-    fn a_sun_is_sampled_within_its_disc_and_met_nowhere_else() {
+    fn a_sun_is_sampled_within_its_disc_and_found_nowhere_else() {
         let toward = [0.3, 0.8, -0.2];
         for angular_diameter in [1e-6, 0.533, 20.0, 120.0, 180.0] {
             let sun = Sun::new(toward, angular_diameter, ());
@@ -120,8 +120,8 @@ mod tests {
                 assert!((found / density - 1.0).abs() < 1e-9, "{angular_diameter} degrees: {found} for {density}");
             }
             let frame = Frame::about(sun.disc().cone.axis);
-            let beside = |angle: f64| frame.to_world(DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)));
-            assert!(pdf(beside(half * 0.999)).is_some() && pdf(beside(half * 1.001)).is_none());
+            let at_angle = |angle: f64| frame.to_world(DVec3::new(libm::sin(angle), 0.0, libm::cos(angle)));
+            assert!(pdf(at_angle(half * 0.999)).is_some() && pdf(at_angle(half * 1.001)).is_none());
         }
     }
 
@@ -132,7 +132,7 @@ mod tests {
             let sun = Sun::new([0.3, 0.8, -0.2], angular_diameter, ());
             for u in (0..64).flat_map(|i| (0..64).map(move |j| [f64::from(i) / 63.001, f64::from(j) / 63.001])) {
                 let ray = Ray { origin: DVec3::ZERO, direction: sun.sample(u) };
-                let light = sun.along(ray);
+                let light = sun.sample_along(ray);
                 let irradiance = light.factor / light.pdf.unwrap_or(f64::NAN);
                 assert!((irradiance - 1.0).abs() < 1e-9, "{angular_diameter} degrees: {u:?}: {irradiance}");
             }

@@ -35,7 +35,7 @@ struct Node {
 /// Number of slices along each axis between which a node may be split.
 const SLICES: usize = 12;
 /// Depth from which on nodes are split in half.
-const DEEP: u32 = 40;
+const MEDIAN_SPLIT_DEPTH: u32 = 40;
 
 impl LightTree {
     /// Builds the tree over lights. Lights that do not shine are never drawn.
@@ -50,8 +50,8 @@ impl LightTree {
         }
         tree.nodes.push(Node::around(lights, &order[..1]));
         tree.parents.push(0);
-        let mut open = vec![(0, 0..order.len(), 0)];
-        while let Some((index, range, depth)) = open.pop() {
+        let mut pending = vec![(0, 0..order.len(), 0)];
+        while let Some((index, range, depth)) = pending.pop() {
             let items = &mut order[range.clone()];
             let mut node = Node::around(lights, items);
             if let [item] = *items {
@@ -63,7 +63,7 @@ impl LightTree {
                 for (child, range) in [range.start..middle, middle..range.end].into_iter().enumerate() {
                     tree.nodes.push(node);
                     tree.parents.push(index as u32);
-                    open.push((node.first as usize + child, range, depth + 1));
+                    pending.push((node.first as usize + child, range, depth + 1));
                 }
             }
             tree.nodes[index] = node;
@@ -120,20 +120,20 @@ fn split(lights: &[LightBounds], items: &mut [u32], depth: u32) -> usize {
         (((center(item)[axis] - low[axis]) / size[axis] * SLICES as f64) as usize).min(SLICES - 1)
     };
     let mut best: Option<(f64, usize, usize)> = None;
-    for axis in (0..3).filter(|&axis| size[axis] > 0.0 && depth < DEEP) {
+    for axis in (0..3).filter(|&axis| size[axis] > 0.0 && depth < MEDIAN_SPLIT_DEPTH) {
         let mut slices = [LightGroup::EMPTY; SLICES];
         for &item in items.iter() {
             let slice = &mut slices[slice(item, axis)];
-            *slice = slice.and(&lights[item as usize]);
+            *slice = slice.with_light(&lights[item as usize]);
         }
         let mut after = [LightGroup::EMPTY; SLICES];
-        (0..SLICES - 1).rev().for_each(|i| after[i] = slices[i + 1].with(&after[i + 1]));
+        (0..SLICES - 1).rev().for_each(|i| after[i] = slices[i + 1].union(&after[i + 1]));
         let mut before = LightGroup::EMPTY;
         for (i, (slice, after)) in slices.iter().zip(&after).enumerate() {
             if slice.intensity == 0.0 || after.intensity == 0.0 {
                 continue;
             }
-            before = before.with(slice);
+            before = before.union(slice);
             // Thin boxes are split along their length.
             let cost = (before.cost() + after.cost()) / size[axis];
             if best.is_none_or(|best| cost < best.0) {
@@ -160,13 +160,13 @@ impl Node {
     /// Creates the node around one or several lights.
     fn around(lights: &[LightBounds], items: &[u32]) -> Self {
         let each = || items.iter().map(|&item| &lights[item as usize]);
-        let all = each().fold(LightGroup::EMPTY, |all, light| all.and(light));
+        let all = each().fold(LightGroup::EMPTY, |all, light| all.with_light(light));
         let axis = all.axis();
         let cosine = |light: &LightBounds| light.normal.zip(axis).map_or(-1.0, |(normal, axis)| normal.dot(axis));
-        let least = each().map(cosine).fold(1.0, f64::min);
+        let min_cosine = each().map(cosine).fold(1.0, f64::min);
         // Rounding must leave no normal out: each of two unit vectors has six roundings, and their product three.
-        let widened = (least - gamma(15)).max(-1.0);
-        let cos = if items.len() == 1 && axis.is_some() { 1.0 } else { widened };
+        let padded_cosine = (min_cosine - gamma(15)).max(-1.0);
+        let cos = if items.len() == 1 && axis.is_some() { 1.0 } else { padded_cosine };
         let radius = (0.5 * all.bounds.size()).length();
         Self {
             center: all.bounds.center(),
@@ -187,30 +187,31 @@ impl Node {
     /// For a sphere of radius r at distance d whose center has the cosine c, the brightest point has a positive cosine
     /// where c > -r / d. The expression (c + r / d) / (1 + r / d) captures this without roots.
     fn importance(&self, from: DVec3, normal: DVec3, two_sided: bool) -> f64 {
-        let way = self.center - from;
-        let squared = way.length_squared();
-        let lit = normal.dot(way) + self.radius;
-        if lit <= 0.0 {
+        let to_center = self.center - from;
+        let distance_squared = to_center.length_squared();
+        let receiver = normal.dot(to_center) + self.radius;
+        if receiver <= 0.0 {
             return 0.0;
         }
-        let distance = squared.sqrt();
-        let along = -self.axis.dot(way);
+        let distance = distance_squared.sqrt();
+        let along = -self.axis.dot(to_center);
         let along = if two_sided || self.two_sided { along.abs() } else { along };
         // The largest cosine to a direction that the lights face: max(0, a - b) of two angles.
         let largest = if along >= self.cos * distance {
             distance
         } else {
-            along * self.cos + (squared - along * along).max(0.0).sqrt() * self.sin
+            along * self.cos + (distance_squared - along * along).max(0.0).sqrt() * self.sin
         };
-        let seen = largest + self.radius;
-        if seen <= 0.0 {
+        let emitter = largest + self.radius;
+        if emitter <= 0.0 {
             return 0.0;
         }
-        let whole = distance + self.radius;
-        let spread = squared.max(self.radius * self.radius).max(NEAREST) * (whole * whole).max(NEAREST);
-        self.intensity * (seen * lit / spread)
+        let farthest = distance + self.radius;
+        let denominator = distance_squared.max(self.radius * self.radius).max(MIN_DISTANCE_SQUARED)
+            * (farthest * farthest).max(MIN_DISTANCE_SQUARED);
+        self.intensity * (emitter * receiver / denominator)
     }
 }
 
 /// Keeps importances finite.
-const NEAREST: f64 = 1e-100;
+const MIN_DISTANCE_SQUARED: f64 = 1e-100;

@@ -2,17 +2,17 @@ use palette::color_difference::Ciede2000;
 use palette::{FromColor, Lab, LinSrgb};
 
 use super::mattes::Mattes;
-use super::noise::{FAMILY, Noise, Noisy};
+use super::noise::{FALSE_ALARM_RATE, Noise, NoisyImage};
 use super::picture::{Picture, percentile, to_rec709};
 use super::tone::shown;
 use crate::error::{Error, Result};
 use crate::film::{BEAUTY, Channel, ExrFile, ExrLayer, PixelBounds};
-use crate::spectrum::{apply, space_of_file};
+use crate::spectrum::{apply, describe_file_colors};
 
 /// Added to the square of a value before it divides the square of a difference, to bound the influence of dark pixels.
-const DARK: f64 = 0.01;
+const MSE_OFFSET: f64 = 0.01;
 /// The largest difference between the matrices of two equal color spaces, written as 32-bit floats.
-const SAME_SPACE: f64 = 1e-3;
+const MAX_MATRIX_ERROR: f64 = 1e-3;
 
 /// The difference between two images. Pixels with a value that is not finite are left out, except from `torn`.
 #[derive(Clone, Debug)]
@@ -96,7 +96,7 @@ pub struct WorstPixel {
 /// [`Error::Arguments`] if one of the files has no such layer, if sizes, channels or color spaces differ, or if the
 /// images have no pixel in common.
 pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> Result<Difference> {
-    let mattes = layer.map(|wanted| files.map(|file| Mattes::within(file, wanted)));
+    let mattes = layer.map(|requested| files.map(|file| Mattes::within(file, requested)));
     let layer = mattes.and_then(|[a, b]| a.filter(|_| a == b)).or(layer);
     let layers = match [0, 1].map(|i| files[i].layer(layer, shown[i])) {
         [Ok(a), Ok(b)] => [a, b],
@@ -105,9 +105,9 @@ pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> R
         }
     };
     let bounds = layers.each_ref().map(|layer| layer.part.bounds);
-    let mut found = match of_common(files, bounds, layer, shown) {
+    let mut found = match compare_common(files, bounds, layer, shown) {
         Some(found) => found?,
-        None => of_layers(files, &layers, layer, shown)?,
+        None => compare_layers(files, &layers, layer, shown)?,
     };
     if layer.is_none() {
         found.only_in = [only_in(files), only_in([files[1], files[0]])];
@@ -116,25 +116,26 @@ pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> R
 }
 
 /// Compares mattes. If there is no such matte, the error is `missing`, or lists the mattes of a file that lacks it.
-fn compare_mattes(files: [&ExrFile; 2], wanted: &str, shown: [&str; 2], missing: Error) -> Result<Difference> {
+fn compare_mattes(files: [&ExrFile; 2], requested: &str, shown: [&str; 2], missing: Error) -> Result<Difference> {
     let all = files.map(Mattes::all);
-    let [Some((a, one)), Some((b, _))] = all.each_ref().map(|all| Mattes::named(all, wanted)) else {
-        let lacks =
-            |at: &usize| files[*at].layer(Some(wanted), "").is_err() && Mattes::named(&all[*at], wanted).is_none();
+    let [Some((a, one)), Some((b, _))] = all.each_ref().map(|all| Mattes::named(all, requested)) else {
+        let lacks_layer = |at: &usize| {
+            files[*at].layer(Some(requested), "").is_err() && Mattes::named(&all[*at], requested).is_none()
+        };
         let names = |at: usize| all[at].iter().map(Mattes::name).collect::<Vec<_>>();
-        let told = (0..2).find(lacks).filter(|at| !all[*at].is_empty());
-        return Err(told.map_or(missing, |at| files[at].no_layer(wanted, shown[at], &names(at))));
+        let listed = (0..2).find(lacks_layer).filter(|at| !all[*at].is_empty());
+        return Err(listed.map_or(missing, |at| files[at].no_layer(requested, shown[at], &names(at))));
     };
-    if let Some(found) = of_common(files, [a, b].map(|mattes| mattes.part.bounds), Some(wanted), shown) {
+    if let Some(found) = compare_common(files, [a, b].map(|mattes| mattes.part.bounds), Some(requested), shown) {
         return found;
     }
     let channels = Mattes::coverages([a, b], one, shown)?;
-    let layer = |part, channel| ExrLayer { name: wanted.to_owned(), part, channels: vec![channel] };
-    of_layers(files, &[layer(a.part, &channels[0]), layer(b.part, &channels[1])], Some(wanted), shown)
+    let layer = |part, channel| ExrLayer { name: requested.to_owned(), part, channels: vec![channel] };
+    compare_layers(files, &[layer(a.part, &channels[0]), layer(b.part, &channels[1])], Some(requested), shown)
 }
 
 /// Compares the pixels that both files have, if one of the files has others as well.
-fn of_common(
+fn compare_common(
     files: [&ExrFile; 2],
     bounds: [PixelBounds; 2],
     layer: Option<&str>,
@@ -142,33 +143,33 @@ fn of_common(
 ) -> Option<Result<Difference>> {
     let common = bounds[0].common(&bounds[1]).filter(|_| files[0].display == files[1].display);
     let common = common.filter(|_| bounds[0] != bounds[1])?;
-    let [a, b] = files.map(|file| file.cut(common));
+    let [a, b] = files.map(|file| file.crop(common));
     Some(compare([&a, &b], layer, shown).map(|found| Difference { is_part: true, ..found }))
 }
 
 /// Compares two layers that cover the same pixels.
-fn of_layers(
+fn compare_layers(
     files: [&ExrFile; 2],
     layers: &[ExrLayer; 2],
     layer: Option<&str>,
     shown: [&str; 2],
 ) -> Result<Difference> {
-    comparable(files, layers, shown)?;
+    check_comparable(files, layers, shown)?;
     let [a, b] = layers.each_ref().map(ExrLayer::values);
     let bounds = layers[0].part.bounds;
-    let mut found = measured([&a, &b], bounds);
+    let mut found = value_difference([&a, &b], bounds);
     if layers.iter().all(|layer| layer.color().is_some()) {
         found.color = Some(color_difference(files, [&a, &b], &found));
         found.alpha = alpha_difference(layers, bounds);
         found.is_equal &= found.alpha.is_none();
     }
-    if let [Some(first), Some(second)] = [0, 1].map(|i| Noisy::new(files[i], &layers[i]))
+    if let [Some(first), Some(second)] = [0, 1].map(|i| NoisyImage::new(files[i], &layers[i]))
         && layers[0].name == BEAUTY
     {
         let finite = |at: usize| [&a, &b].iter().all(|channels| channels.iter().all(|one| one.at(at).is_finite()));
         found.noise = Some(Noise::new([&first, &second], |at| !finite(at)));
-        let fewest = |at: usize| Some(first.taken(at)?.min(second.taken(at)?));
-        let by_chance = |at: usize| Some(2.0 * libm::pow(0.25, fewest(at)?));
+        let min_samples = |at: usize| Some(first.sample_count(at)?.min(second.sample_count(at)?));
+        let by_chance = |at: usize| Some(2.0 * libm::pow(0.25, min_samples(at)?));
         let by_chance = (0..found.absolute.len()).map(by_chance).sum();
         found.alpha = found.alpha.map(|alpha| AlphaDifference { opposite_by_chance: by_chance, ..alpha });
     }
@@ -190,40 +191,41 @@ fn only_in([own, other]: [&ExrFile; 2]) -> Vec<String> {
         let is_missing = |channel: &&&Channel| !same.channels.iter().any(|other| other.name == channel.name);
         only.extend(layer.channels.iter().filter(is_missing).map(|channel| channel.full_name()));
     }
-    by_kind(own, only)
+    merge_matte_layers(own, only)
 }
 
 /// Replaces the names of matte layers by the names of their mattes.
-fn by_kind(file: &ExrFile, names: Vec<String>) -> Vec<String> {
+fn merge_matte_layers(file: &ExrFile, names: Vec<String>) -> Vec<String> {
     let mattes = Mattes::all(file);
-    let kind = |name: String| mattes.iter().find(|kind| kind.is_in(&name)).map_or(name, |kind| kind.name().to_owned());
-    let mut told: Vec<String> = names.into_iter().map(kind).collect();
-    told.dedup();
-    told
+    let kind =
+        |name: String| mattes.iter().find(|kind| kind.has_layer(&name)).map_or(name, |kind| kind.name().to_owned());
+    let mut listed: Vec<String> = names.into_iter().map(kind).collect();
+    listed.dedup();
+    listed
 }
 
 /// Lists the layers that differ between the files, in the channels and pixels that both have.
 fn layers_apart(files: [&ExrFile; 2]) -> Vec<String> {
     let [first, second] = files.map(ExrFile::layers);
-    let mut apart = Vec::new();
+    let mut differing = Vec::new();
     for a in &first {
         let Some(b) = second.iter().find(|b| b.name == a.name) else { continue };
         let bounds = [a, b].map(|layer| layer.part.bounds);
         let Some(common) = bounds[0].common(&bounds[1]) else { continue };
-        let is_apart = |one: &Channel| {
+        let differs = |one: &Channel| {
             let other = b.channels.iter().find(|other| other.name == one.name);
             let mut places = (0..common.pixels()).map(|at| bounds.map(|bounds| bounds.index(common.place(at))));
             other.is_some_and(|other| !places.all(|[a, b]| is_same(one.at(a), other.at(b))))
         };
-        if a.channels.iter().any(|one| is_apart(one)) {
-            apart.push(a.name.clone());
+        if a.channels.iter().any(|one| differs(one)) {
+            differing.push(a.name.clone());
         }
     }
-    by_kind(files[0], apart)
+    merge_matte_layers(files[0], differing)
 }
 
 /// Refuses images that differ in their pixels, their channels or their color space.
-fn comparable(files: [&ExrFile; 2], layers: &[ExrLayer; 2], shown: [&str; 2]) -> Result<()> {
+fn check_comparable(files: [&ExrFile; 2], layers: &[ExrLayer; 2], shown: [&str; 2]) -> Result<()> {
     let refuse = |what: [String; 2], help: &str| {
         Error::refuse(format!("{} has {}, {} {}", shown[0], what[0], shown[1], what[1]), help)
     };
@@ -244,8 +246,8 @@ fn comparable(files: [&ExrFile; 2], layers: &[ExrLayer; 2], shown: [&str; 2]) ->
     if layers[0].color().is_some() {
         let matrices = files.map(|file| to_rec709(file).0);
         let pairs = matrices[0].as_flattened().iter().zip(matrices[1].as_flattened());
-        if pairs.into_iter().any(|(a, b)| (a - b).abs() > SAME_SPACE) {
-            let space = |file: &ExrFile| space_of_file(file.attribute("colorInteropID"), file.chromaticities);
+        if pairs.into_iter().any(|(a, b)| (a - b).abs() > MAX_MATRIX_ERROR) {
+            let space = |file: &ExrFile| describe_file_colors(file.attribute("colorInteropID"), file.chromaticities);
             return refuse(files.map(space), "colors of different color spaces cannot be compared");
         }
     }
@@ -258,7 +260,7 @@ fn is_same(a: f64, b: f64) -> bool {
 }
 
 /// Measures everything that depends on the values alone.
-fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
+fn value_difference([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
     let (mut sums, mut squares, mut values, mut most) = ([0.0; 2], 0.0, 0usize, 0.0);
     let mut found = Difference {
         bounds,
@@ -297,7 +299,7 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
         }
         let (mut error, mut absolute) = (0.0, 0.0f64);
         for (a, b) in pairs() {
-            error += (a - b) * (a - b) / (b * b + DARK);
+            error += (a - b) * (a - b) / (b * b + MSE_OFFSET);
             absolute = absolute.max((a - b).abs());
             sums = [sums[0] + a, sums[1] + b];
             values += 1;
@@ -317,18 +319,18 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
 fn alpha_difference(layers: &[ExrLayer; 2], bounds: PixelBounds) -> Option<AlphaDifference> {
     let [a, b] = layers.each_ref().map(|layer| layer.channel("a"));
     let (a, b) = (a?, b?);
-    let found = measured([&[a], &[b]], bounds);
+    let found = value_difference([&[a], &[b]], bounds);
     let largest = found.absolute.iter().copied().fold(0.0, f64::max);
     let is_opposite = |at: &usize| [[0.0, 1.0], [1.0, 0.0]].contains(&[a.at(*at), b.at(*at)]);
     let opposite = (0..found.absolute.len()).filter(is_opposite).count();
-    let of_alpha = AlphaDifference { largest, relative_mse: found.relative_mse, opposite, opposite_by_chance: None };
-    (!found.is_equal).then_some(of_alpha)
+    let result = AlphaDifference { largest, relative_mse: found.relative_mse, opposite, opposite_by_chance: None };
+    (!found.is_equal).then_some(result)
 }
 
-fn color_difference(files: [&ExrFile; 2], colors: [&[&Channel]; 2], measured: &Difference) -> ColorDifference {
+fn color_difference(files: [&ExrFile; 2], colors: [&[&Channel]; 2], value_difference: &Difference) -> ColorDifference {
     let matrices = files.map(|file| to_rec709(file).0);
     let (mut sum, mut worst, mut clipped, mut count) = (0.0, 0.0f64, 0usize, 0usize);
-    for at in 0..measured.absolute.len() {
+    for at in 0..value_difference.absolute.len() {
         let values = [0, 1].map(|i| [0, 1, 2].map(|channel| colors[i][channel].at(at)));
         if !values.as_flattened().iter().all(|x| x.is_finite()) {
             continue;
@@ -356,7 +358,7 @@ impl AlphaDifference {
     /// Returns whether chance makes this many pixels opposite in at most one of a hundred pairs of images. By Markov's
     /// inequality, a nonnegative random number exceeds a hundred times its mean no more often.
     pub fn contradicts(&self) -> bool {
-        self.opposite_by_chance.is_some_and(|by_chance| FAMILY * self.opposite as f64 > by_chance)
+        self.opposite_by_chance.is_some_and(|by_chance| FALSE_ALARM_RATE * self.opposite as f64 > by_chance)
     }
 }
 
@@ -417,7 +419,7 @@ mod tests {
     /// Grays of L* 0, 50 and 100: linear 0, ((50 + 16) / 116)^3 and 1. Of L* 50 and 100, S_L is
     /// 1 + 0.015 * 25^2 / sqrt(20 + 25^2) = 1.36911.
     #[test]
-    fn grays_are_apart_by_their_lightness_alone_and_light_beyond_white_is_white() {
+    fn grays_differ_by_their_lightness_alone_and_light_beyond_white_is_white() {
         let gray = libm::pow(66.0 / 116.0, 3.0);
         assert!((delta_e_2000([[1.0; 3], [gray; 3]]) - 50.0 / 1.369_11).abs() < 2e-2);
         assert_eq!(delta_e_2000([[1.0; 3], [1e30, 2.0, f64::INFINITY]]), 0.0);

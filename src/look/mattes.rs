@@ -5,7 +5,7 @@ use crate::error::{Error, Result, nearest};
 use crate::film::{Channel, ExrFile, ExrLayer, Part, id};
 
 /// The maximum number of names that are listed if one is unknown.
-const MOST_LISTED: usize = 20;
+const MAX_LISTED: usize = 20;
 
 /// The mattes of one kind in a file, such as `CryptoObject`: the names that each pixel shows, and the coverage of each.
 ///
@@ -34,8 +34,8 @@ impl<'f> Mattes<'f> {
             if all.iter().any(|known| known.name == name) {
                 continue;
             }
-            let of_number = |number: usize| layers.iter().find(|layer| layer.name == format!("{name}{number:02}"));
-            let found: Vec<&ExrLayer> = (0..).map_while(of_number).filter(|layer| layer.channels.len() == 4).collect();
+            let numbered = |number: usize| layers.iter().find(|layer| layer.name == format!("{name}{number:02}"));
+            let found: Vec<&ExrLayer> = (0..).map_while(numbered).filter(|layer| layer.channels.len() == 4).collect();
             let ranks: Vec<_> = found.iter().flat_map(|layer| pairs(layer)).collect();
             if let Some(first) = found.first().filter(|first| found.iter().all(|layer| same_size(first, layer))) {
                 let names = file.attribute(&format!("{start}/manifest")).map_or_else(BTreeMap::new, names);
@@ -51,7 +51,7 @@ impl<'f> Mattes<'f> {
     }
 
     /// Returns whether a layer, such as `CryptoObject00`, holds some of these mattes.
-    pub(super) fn is_in(&self, layer: &str) -> bool {
+    pub(super) fn has_layer(&self, layer: &str) -> bool {
         let number = layer.strip_prefix(self.name);
         number.is_some_and(|number| number.len() == 2 && number.bytes().all(|digit| digit.is_ascii_digit()))
     }
@@ -59,7 +59,7 @@ impl<'f> Mattes<'f> {
     /// Returns the kind of mattes that a layer of a file holds, such as `CryptoObject` for `CryptoObject00`. The values
     /// of such a layer are IDs of names, not colors.
     pub fn within(file: &'f ExrFile, layer: &str) -> Option<&'f str> {
-        Self::all(file).iter().find(|mattes| mattes.is_in(layer)).map(Self::name)
+        Self::all(file).iter().find(|mattes| mattes.has_layer(layer)).map(Self::name)
     }
 
     /// Returns a picture of every name in its own color, weighted by its coverage, and black where there is nothing.
@@ -77,19 +77,19 @@ impl<'f> Mattes<'f> {
     ///
     /// # Errors
     /// [`Error::Arguments`] if there is no such name, suggesting the closest one. `shown` names the file in messages.
-    pub fn matte(&self, wanted: &str, shown: &str) -> Result<Picture> {
-        let known = match self.names.get(wanted) {
+    pub fn matte(&self, requested: &str, shown: &str) -> Result<Picture> {
+        let known = match self.names.get(requested) {
             Some(number) => *number,
-            None if self.names.is_empty() => id(wanted),
-            None => return Err(self.unknown(wanted, shown)),
+            None if self.names.is_empty() => id(requested),
+            None => return Err(self.unknown_name(requested, shown)),
         };
-        Ok(Picture::of_grays(self.width(), (0..self.part.bounds.pixels()).map(|at| self.covered(known, at))))
+        Ok(Picture::of_grays(self.width(), (0..self.part.bounds.pixels()).map(|at| self.coverage_of(known, at))))
     }
 
     /// Finds the requested kind of mattes, and the name of a single matte: for `CryptoObject.ball` it is `ball`.
-    pub fn named<'m, 'w>(all: &'m [Self], wanted: &'w str) -> Option<(&'m Self, Option<&'w str>)> {
+    pub fn named<'m, 'w>(all: &'m [Self], requested: &'w str) -> Option<(&'m Self, Option<&'w str>)> {
         all.iter().find_map(|mattes| {
-            let rest = wanted.strip_prefix(mattes.name)?;
+            let rest = requested.strip_prefix(mattes.name)?;
             (rest.is_empty() || rest.starts_with('.')).then_some((mattes, rest.get(1..)))
         })
     }
@@ -100,17 +100,17 @@ impl<'f> Mattes<'f> {
     /// # Errors
     /// [`Error::Arguments`] if neither image has such a name.
     pub(super) fn coverages([a, b]: [&Self; 2], one: Option<&str>, shown: [&str; 2]) -> Result<[Channel; 2]> {
-        if let Some(wanted) = one
-            && [a, b].iter().all(|own| !own.names.is_empty() && !own.names.contains_key(wanted))
+        if let Some(requested) = one
+            && [a, b].iter().all(|own| !own.names.is_empty() && !own.names.contains_key(requested))
         {
-            return Err(a.unknown(wanted, shown[0]));
+            return Err(a.unknown_name(requested, shown[0]));
         }
-        let both = |known: u32, at: usize| [a, b].map(|own| own.covered(known, at));
+        let both = |known: u32, at: usize| [a, b].map(|own| own.coverage_of(known, at));
         let furthest = |at: usize| {
             let numbers = [a, b].into_iter().flat_map(|own| own.ranks.iter().map(|[numbers, _]| number(numbers, at)));
             let pairs = numbers.filter(|known| *known != 0).map(|known| both(known, at));
-            let apart = |[a, b]: [f64; 2]| (a - b).abs();
-            pairs.reduce(|most, next| if apart(next) > apart(most) { next } else { most }).unwrap_or_default()
+            let distance = |[a, b]: [f64; 2]| (a - b).abs();
+            pairs.reduce(|most, next| if distance(next) > distance(most) { next } else { most }).unwrap_or_default()
         };
         let known = one.map(id);
         let pairs = (0..a.part.bounds.pixels()).map(|at| known.map_or_else(|| furthest(at), |known| both(known, at)));
@@ -119,25 +119,25 @@ impl<'f> Mattes<'f> {
     }
 
     /// Returns the coverage of an ID in a pixel.
-    fn covered(&self, known: u32, at: usize) -> f64 {
-        let of_it = self.ranks.iter().filter(|[numbers, _]| number(numbers, at) == known);
-        of_it.map(|[_, covered]| coverage(covered, at)).sum::<f64>().min(1.0)
+    fn coverage_of(&self, known: u32, at: usize) -> f64 {
+        let matching = self.ranks.iter().filter(|[numbers, _]| number(numbers, at) == known);
+        matching.map(|[_, covered]| coverage(covered, at)).sum::<f64>().min(1.0)
     }
 
     fn width(&self) -> usize {
         self.part.bounds.size[0]
     }
 
-    fn unknown(&self, wanted: &str, shown: &str) -> Error {
+    fn unknown_name(&self, requested: &str, shown: &str) -> Error {
         let names = || self.names.keys().map(String::as_str);
-        let near = nearest(wanted, names()).map_or(String::new(), |near| format!("did you mean {near}? "));
-        let listed = names().take(MOST_LISTED).collect::<Vec<_>>().join(", ");
-        let more = match self.names.len().saturating_sub(MOST_LISTED) {
+        let near = nearest(requested, names()).map_or(String::new(), |near| format!("did you mean {near}? "));
+        let listed = names().take(MAX_LISTED).collect::<Vec<_>>().join(", ");
+        let more = match self.names.len().saturating_sub(MAX_LISTED) {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
         Error::Arguments {
-            message: format!("{shown} has no {wanted} in {}", self.name),
+            message: format!("{shown} has no {requested} in {}", self.name),
             help: Some(format!("{near}it has {listed}{more}")),
         }
     }
@@ -179,9 +179,9 @@ fn color(number: u32) -> [f64; 3] {
     let [hue, bright] = [number >> 16, number & 0xffff].map(|bits| f64::from(bits) / 65536.0);
     // The hue goes from red through green and blue back to red.
     [0.0, 2.0, 4.0].map(|peak| {
-        let apart = (6.0 * hue - peak).rem_euclid(6.0);
-        let apart = apart.min(6.0 - apart);
-        (0.15 + 0.85 * bright) * (0.1 + 0.9 * (2.0 - apart).clamp(0.0, 1.0))
+        let distance = (6.0 * hue - peak).rem_euclid(6.0);
+        let distance = distance.min(6.0 - distance);
+        (0.15 + 0.85 * bright) * (0.1 + 0.9 * (2.0 - distance).clamp(0.0, 1.0))
     })
 }
 

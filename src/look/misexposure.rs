@@ -34,13 +34,13 @@ impl Shows {
 }
 
 /// The multiple of white from which a pixel counts as clipped. Noise around white does not.
-const CUT_OFF: f64 = 1.02;
+const CLIP_LEVEL: f64 = 1.02;
 /// Light that a screen shows less than five steps of 255 above black.
-const SEEN: f64 = 0.0015;
+const MIN_VISIBLE: f64 = 0.0015;
 /// The brightness that most of a picture should have, in stops: about that of middle gray, 0.18.
-const MIDDLE: i32 = -2;
+const MIDDLE_GRAY_STOPS: i32 = -2;
 /// The range of a pixel's luminance, in stops, that is distinguished.
-const STOPS: std::ops::RangeInclusive<i32> = -126..=127;
+const STOP_RANGE: std::ops::RangeInclusive<i32> = -126..=127;
 
 impl Misexposure {
     /// Checks the picture that is written of a film, brightened by 2^`stops` and clipped at white. Returns none for a
@@ -69,29 +69,29 @@ impl Misexposure {
 /// The number of pixels of each kind.
 struct Counts {
     all: u64,
-    lit: Lit,
+    lit: LitCounts,
     /// The lit pixels that show objects.
-    covered: Lit,
+    covered: LitCounts,
     /// Pixels in which a screen shows light.
     seen: u64,
 }
 
 /// The number of pixels with light.
-struct Lit {
+struct LitCounts {
     all: u64,
     white: u64,
     /// The number of pixels at each luminance.
     by_stops: Vec<u64>,
 }
 
-impl Lit {
+impl LitCounts {
     fn new() -> Self {
-        Self { all: 0, white: 0, by_stops: vec![0; STOPS.clone().count()] }
+        Self { all: 0, white: 0, by_stops: vec![0; STOP_RANGE.clone().count()] }
     }
 
     fn add(&mut self, is_white: bool, stops: i32) {
         (self.all, self.white) = (self.all + 1, self.white + u64::from(is_white));
-        self.by_stops[(stops - STOPS.start()) as usize] += 1;
+        self.by_stops[(stops - STOP_RANGE.start()) as usize] += 1;
     }
 
     fn is_white(&self) -> bool {
@@ -99,19 +99,20 @@ impl Lit {
     }
 
     /// Returns the exposure at which three quarters of the pixels have at most middle gray.
-    fn fitting(&self) -> i32 {
+    fn fitting_stops(&self) -> i32 {
         let below = self.by_stops.iter().scan(0, |sum, count| {
             *sum += count;
             Some(*sum)
         });
-        MIDDLE - STOPS.zip(below).find(|(_, below)| 4 * below >= 3 * self.all).map_or(0, |(stops, _)| stops)
+        MIDDLE_GRAY_STOPS
+            - STOP_RANGE.zip(below).find(|(_, below)| 4 * below >= 3 * self.all).map_or(0, |(stops, _)| stops)
     }
 }
 
 impl Counts {
     /// Counts pixels, given in linear Rec.709 with alpha.
     fn of(exposure: Exposure, pixels: impl Iterator<Item = ([f64; 3], f32)>) -> Self {
-        let mut counts = Self { all: 0, lit: Lit::new(), covered: Lit::new(), seen: 0 };
+        let mut counts = Self { all: 0, lit: LitCounts::new(), covered: LitCounts::new(), seen: 0 };
         let gain = libm::exp2(exposure.stops);
         for (rgb, alpha) in pixels {
             counts.all += 1;
@@ -119,13 +120,13 @@ impl Counts {
             if !luminance.is_finite() || luminance <= 0.0 {
                 continue;
             }
-            let is_white = rgb.iter().all(|x| exposure.tone.shown(x * gain / CUT_OFF) >= 1.0);
-            let stops = (libm::round(libm::log2(luminance)) as i32).clamp(*STOPS.start(), *STOPS.end());
+            let is_white = rgb.iter().all(|x| exposure.tone.shown(x * gain / CLIP_LEVEL) >= 1.0);
+            let stops = (libm::round(libm::log2(luminance)) as i32).clamp(*STOP_RANGE.start(), *STOP_RANGE.end());
             counts.lit.add(is_white, stops);
             if alpha > 0.5 {
                 counts.covered.add(is_white, stops);
             }
-            counts.seen += u64::from(rgb.iter().any(|x| exposure.tone.shown(x * gain) >= SEEN));
+            counts.seen += u64::from(rgb.iter().any(|x| exposure.tone.shown(x * gain) >= MIN_VISIBLE));
         }
         counts
     }
@@ -140,7 +141,7 @@ impl Counts {
             _ if 20 * lit.all > self.all && 1000 * self.seen <= self.all => (Shows::Black, lit),
             _ => return None,
         };
-        Some(Misexposure { shows, stops: of.fitting() })
+        Some(Misexposure { shows, stops: of.fitting_stops() })
     }
 }
 
@@ -149,35 +150,35 @@ mod tests {
     use super::*;
 
     /// Checks a picture of grays, each with its alpha.
-    fn told(grays: &[(f64, f32)], stops: f64) -> Option<Misexposure> {
+    fn misexposure_of(grays: &[(f64, f32)], stops: f64) -> Option<Misexposure> {
         let exposure = Exposure { stops, ..Exposure::default() };
         Counts::of(exposure, grays.iter().map(|&(gray, alpha)| ([gray; 3], alpha))).misexposure()
     }
 
     #[test]
-    fn a_picture_that_is_white_or_black_as_a_whole_is_told_with_the_exposure_of_middle_gray() {
+    fn a_picture_that_is_all_white_or_all_black_is_reported_with_the_exposure_of_middle_gray() {
         let [white, objects, black] = [Shows::White, Shows::WhiteObjects, Shows::Black]
             .map(|shows| move |stops| Some(Misexposure { shows, stops }));
-        assert_eq!(told(&[(8.0, 1.0), (16.0, 1.0), (8.0, 0.0), (4.0, 0.0)], 0.0), white(-5));
-        assert_eq!(told(&[(1.5, 1.0)], 0.0), white(-3));
-        assert_eq!(told(&[(0.2, 1.0)], 4.0), white(0));
-        assert_eq!(told(&[(64.0, 1.0), (64.0, 1.0), (0.3, 0.0), (0.4, 0.0)], 0.0), objects(-8));
-        assert_eq!(told(&[(1e-5, 1.0), (2e-5, 1.0), (0.0, 0.0)], 0.0), black(14));
-        assert_eq!(told(&[(0.2, 1.0)], -10.0), black(0));
+        assert_eq!(misexposure_of(&[(8.0, 1.0), (16.0, 1.0), (8.0, 0.0), (4.0, 0.0)], 0.0), white(-5));
+        assert_eq!(misexposure_of(&[(1.5, 1.0)], 0.0), white(-3));
+        assert_eq!(misexposure_of(&[(0.2, 1.0)], 4.0), white(0));
+        assert_eq!(misexposure_of(&[(64.0, 1.0), (64.0, 1.0), (0.3, 0.0), (0.4, 0.0)], 0.0), objects(-8));
+        assert_eq!(misexposure_of(&[(1e-5, 1.0), (2e-5, 1.0), (0.0, 0.0)], 0.0), black(14));
+        assert_eq!(misexposure_of(&[(0.2, 1.0)], -10.0), black(0));
     }
 
     #[test]
-    fn white_and_black_that_may_be_meant_are_not_told() {
+    fn white_and_black_that_may_be_intended_are_not_reported() {
         let mostly = |gray: f64, (other, alpha): (f64, f32)| {
             let mut all = vec![(gray, 0.0); 99];
             all.push((other, alpha));
-            told(&all, 0.0)
+            misexposure_of(&all, 0.0)
         };
         // An object in front of a white sky, a white furnace, a lamp and a star in the dark, no light at all.
         assert_eq!(mostly(3.0, (0.4, 1.0)), None);
-        assert_eq!(told(&[(1.01, 1.0), (1.0, 1.0)], 0.0), None);
+        assert_eq!(misexposure_of(&[(1.01, 1.0), (1.0, 1.0)], 0.0), None);
         assert_eq!(mostly(0.0, (50.0, 1.0)), None);
         assert_eq!(mostly(1e-5, (0.5, 0.0)), None);
-        assert_eq!(told(&[(0.0, 1.0), (f64::NAN, 1.0), (-1.0, 0.0)], 0.0), None);
+        assert_eq!(misexposure_of(&[(0.0, 1.0), (f64::NAN, 1.0), (-1.0, 0.0)], 0.0), None);
     }
 }

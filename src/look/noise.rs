@@ -4,7 +4,7 @@ use super::significance::{normal_equivalent, sidak_threshold};
 use crate::film::{Channel, ExrFile, ExrLayer, TELL_VARIANCE};
 
 /// The probability of a false alarm: that two images of the same thing are said to differ.
-pub(super) const FAMILY: f64 = 0.01;
+pub(super) const FALSE_ALARM_RATE: f64 = 0.01;
 /// The relative difference up to which values count as equal, whatever their variance, and the same for half floats.
 const ROUNDING: f64 = 1e-5;
 const ROUNDING_OF_HALF: f64 = 1.0 / 1024.0;
@@ -36,12 +36,12 @@ pub struct Noise {
 }
 
 /// The data that is needed from one image.
-pub(super) struct Noisy<'f> {
+pub(super) struct NoisyImage<'f> {
     colors: Vec<&'f Channel>,
     variance: Vec<&'f Channel>,
     samples: Option<&'f Channel>,
     /// The number of samples per pixel, if the file states it.
-    taken: Option<f64>,
+    sample_count: Option<f64>,
     /// The number of renders from which the variance is estimated, if not from samples.
     replicates: Option<f64>,
     /// Columns and rows.
@@ -49,26 +49,26 @@ pub(super) struct Noisy<'f> {
     rounding: f64,
 }
 
-impl<'f> Noisy<'f> {
+impl<'f> NoisyImage<'f> {
     /// Selects the colors of a file and their variance. Returns none if the file has no variance, or states that there
     /// were too few samples to estimate it.
     pub(super) fn new(file: &'f ExrFile, beauty: &ExrLayer<'f>) -> Option<Self> {
-        let said = |name: &str| file.attribute(name).and_then(|count| count.parse::<f64>().ok());
-        let (taken, replicates) = (said("render/samples"), said("render/replicates"));
-        if taken.is_some_and(|taken| taken < f64::from(TELL_VARIANCE)) {
+        let number_attribute = |name: &str| file.attribute(name).and_then(|count| count.parse::<f64>().ok());
+        let (sample_count, replicates) = (number_attribute("render/samples"), number_attribute("render/replicates"));
+        if sample_count.is_some_and(|sample_count| sample_count < f64::from(TELL_VARIANCE)) {
             return None;
         }
         let layers = file.layers();
-        let there = |name: &str| {
+        let find_layer = |name: &str| {
             let named = layers.iter().filter(move |layer| layer.name == name);
             named.into_iter().find(|layer| layer.part.bounds == beauty.part.bounds)
         };
-        let variance = there("variance")?.color()?.to_vec();
-        let samples = there("samples").and_then(|layer| layer.channels.first().copied());
+        let variance = find_layer("variance")?.color()?.to_vec();
+        let samples = find_layer("samples").and_then(|layer| layer.channels.first().copied());
         let (colors, size) = (beauty.color()?.to_vec(), beauty.part.bounds.size);
         let half = colors.iter().any(|channel| channel.kind() == "half");
         let rounding = if half { ROUNDING_OF_HALF } else { ROUNDING };
-        Some(Self { colors, variance, samples, taken, replicates, size, rounding })
+        Some(Self { colors, variance, samples, sample_count, replicates, size, rounding })
     }
 
     fn variance(&self, channel: usize, pixel: usize) -> f64 {
@@ -79,32 +79,33 @@ impl<'f> Noisy<'f> {
     /// Returns the variance of a pixel, or a substitute if few samples happen to agree and it is far too small: half
     /// the median around the pixel, or, if all samples are equal, the variance if one sample showed what the most
     /// different neighbor shows.
-    fn variance_beside_neighbors(&self, channel: usize, pixel: usize) -> f64 {
-        let told = self.variance(channel, pixel);
+    fn robust_variance(&self, channel: usize, pixel: usize) -> f64 {
+        let own_variance = self.variance(channel, pixel);
         let [columns, rows] = self.size;
         let [column, row] = [pixel % columns, pixel / columns];
-        let beside = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
-        let neighbors = beside(row, rows).flat_map(|y| beside(column, columns).map(move |x| y * columns + x));
-        if told > 0.0 {
+        let neighborhood = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
+        let neighbors =
+            neighborhood(row, rows).flat_map(|y| neighborhood(column, columns).map(move |x| y * columns + x));
+        if own_variance > 0.0 {
             let mut around: SmallVec<[f64; 9]> = neighbors.map(|other| self.variance(channel, other)).collect();
             let middle = around.len() / 2;
-            return told.max(0.5 * *around.select_nth_unstable_by(middle, f64::total_cmp).1);
+            return own_variance.max(0.5 * *around.select_nth_unstable_by(middle, f64::total_cmp).1);
         }
-        let Some(taken) = self.taken(pixel) else { return told };
+        let Some(sample_count) = self.sample_count(pixel) else { return own_variance };
         let value = self.colors[channel].at(pixel);
-        let apart = neighbors.map(|other| (self.colors[channel].at(other) - value).abs());
-        let apart = apart.filter(|apart| apart.is_finite()).fold(0.0, f64::max);
-        (apart / taken) * (apart / taken)
+        let difference = neighbors.map(|other| (self.colors[channel].at(other) - value).abs());
+        let difference = difference.filter(|difference| difference.is_finite()).fold(0.0, f64::max);
+        (difference / sample_count) * (difference / sample_count)
     }
 
     /// Returns the number of samples of a pixel, or else the average number per pixel, if the file states it.
-    pub(super) fn taken(&self, pixel: usize) -> Option<f64> {
-        self.samples.map(|samples| samples.at(pixel)).or(self.taken).filter(|taken| *taken >= 1.0)
+    pub(super) fn sample_count(&self, pixel: usize) -> Option<f64> {
+        self.samples.map(|samples| samples.at(pixel)).or(self.sample_count).filter(|sample_count| *sample_count >= 1.0)
     }
 
     /// Returns how many independent values beyond the first the variance rests on. Infinite if that is not stated.
     fn freedom(&self, pixel: usize) -> f64 {
-        let values = self.replicates.or_else(|| self.taken(pixel));
+        let values = self.replicates.or_else(|| self.sample_count(pixel));
         values.map_or(f64::INFINITY, |values| (values - 1.0).max(1.0))
     }
 }
@@ -119,9 +120,9 @@ fn freedom(variances: [f64; 2], of_each: [f64; 2]) -> f64 {
 
 impl Noise {
     /// Compares two images of the same size, except for pixels that `is_left_out` excludes.
-    pub(super) fn new(noisy: [&Noisy; 2], is_left_out: impl Fn(usize) -> bool) -> Self {
+    pub(super) fn new(noisy: [&NoisyImage; 2], is_left_out: impl Fn(usize) -> bool) -> Self {
         let rounding = noisy[0].rounding.max(noisy[1].rounding);
-        let same = |a: f64, b: f64| (a - b).abs() <= rounding * a.abs().max(b.abs());
+        let is_equal = |a: f64, b: f64| (a - b).abs() <= rounding * a.abs().max(b.abs());
         let (channels, [columns, rows]) = (noisy[0].colors.len(), noisy[0].size);
         let (mut all, mut tests) = (Vec::new(), channels);
         let mut found = Self { threshold: 0.0, worst: 0.0, at: [0; 2], beyond: 0, changed: 0, means: Vec::new() };
@@ -130,29 +131,29 @@ impl Noise {
             for pixel in (0..columns * rows).filter(|pixel| !is_left_out(*pixel)) {
                 let [a, b] = noisy.map(|noisy| noisy.colors[channel].at(pixel));
                 let variances = noisy.map(|noisy| noisy.variance(channel, pixel));
-                let both = variances[0] + variances[1];
-                (sums, variance) = ([sums[0] + a, sums[1] + b], variance + both);
-                tests += usize::from(both > 0.0);
-                if same(a, b) {
+                let total = variances[0] + variances[1];
+                (sums, variance) = ([sums[0] + a, sums[1] + b], variance + total);
+                tests += usize::from(total > 0.0);
+                if is_equal(a, b) {
                     continue;
                 }
-                let variances = noisy.map(|noisy| noisy.variance_beside_neighbors(channel, pixel));
-                let both = variances[0] + variances[1];
-                if both == 0.0 {
+                let variances = noisy.map(|noisy| noisy.robust_variance(channel, pixel));
+                let total = variances[0] + variances[1];
+                if total == 0.0 {
                     found.changed += 1;
                     continue;
                 }
                 let freedom = freedom(variances, noisy.map(|noisy| noisy.freedom(pixel)));
-                let z = normal_equivalent((a - b) / both.sqrt(), freedom);
+                let z = normal_equivalent((a - b) / total.sqrt(), freedom);
                 all.push(z);
                 if z.abs() > found.worst.abs() {
                     (found.worst, found.at) = (z, [pixel, channel]);
                 }
             }
             let [a, b] = sums;
-            found.means.push(if same(a, b) || variance == 0.0 { 0.0 } else { (a - b) / variance.sqrt() });
+            found.means.push(if is_equal(a, b) || variance == 0.0 { 0.0 } else { (a - b) / variance.sqrt() });
         }
-        found.threshold = sidak_threshold(tests, FAMILY);
+        found.threshold = sidak_threshold(tests, FALSE_ALARM_RATE);
         found.beyond = all.iter().filter(|z| z.abs() > found.threshold).count();
         found
     }

@@ -3,10 +3,10 @@ use std::path::Path;
 use super::tone::{Tone, shown};
 use crate::error::Result;
 use crate::film::{Channel, ExrFile, ExrLayer, png, replace_file};
-use crate::spectrum::{IDENTITY, Matrix, apply, encode_srgb, matrix_of_file};
+use crate::spectrum::{IDENTITY, Matrix, apply, encode_srgb, file_to_rec709};
 
 /// The value from which depths and the like stand for nothing at all.
-const NOTHING: f64 = 1e9;
+const EMPTY_VALUE: f64 = 1e9;
 
 /// The brightness at which colors are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,32 +36,33 @@ impl Picture {
     pub fn of_layer(file: &ExrFile, layer: &ExrLayer, exposure: Exposure) -> (Self, Vec<String>) {
         let width = layer.part.bounds.size[0];
         if let Some(color) = layer.color() {
-            let (to_rec709, said) = to_rec709(file);
+            let (to_rec709, remarks) = to_rec709(file);
             let gain = libm::exp2(exposure.stops);
-            let show = |rgb: [f64; 3]| apply(&to_rec709, rgb.map(|x| x * gain)).map(|x| exposure.tone.shown(x) as f32);
+            let expose =
+                |rgb: [f64; 3]| apply(&to_rec709, rgb.map(|x| x * gain)).map(|x| exposure.tone.shown(x) as f32);
             let all = 0..layer.part.bounds.pixels();
-            let pixels = all.map(|at| show(color.map(|channel| channel.at(at)))).collect();
-            return (Self { width, pixels, is_light: true }, said.into_iter().collect());
+            let pixels = all.map(|at| expose(color.map(|channel| channel.at(at)))).collect();
+            return (Self { width, pixels, is_light: true }, remarks.into_iter().collect());
         }
-        let (mut planes, mut said, is_direction) = (Vec::new(), Vec::new(), is_direction(layer));
+        let (mut planes, mut remarks, is_direction) = (Vec::new(), Vec::new(), is_direction(layer));
         for channel in layer.channels.iter().take(3) {
-            let (low, high) = if is_direction { (-1.0, 1.0) } else { span(channel) };
+            let (low, high) = if is_direction { (-1.0, 1.0) } else { value_range(channel) };
             if !is_direction {
-                said.push(format!(
+                remarks.push(format!(
                     "{}: black is {:?}, white {:?}, the 1st and 99th percentile of the finite values below 1e9",
                     channel.full_name(),
                     low as f32,
                     high as f32
                 ));
             }
-            planes.push(stretched(channel, low, high));
+            planes.push(stretch(channel, low, high));
         }
         let pixel = |at: usize| match &planes[..] {
             [gray] => [gray[at]; 3],
             planes => std::array::from_fn(|i| planes.get(i).map_or(0.0, |plane| plane[at])),
         };
         let pixels = (0..planes.first().map_or(0, Vec::len)).map(pixel).collect();
-        (Self { width, pixels, is_light: false }, said)
+        (Self { width, pixels, is_light: false }, remarks)
     }
 
     /// Creates a picture from linear Rec.709 light up to 1, row by row.
@@ -113,7 +114,7 @@ impl Picture {
     /// # Errors
     /// If the file cannot be written. Nothing is then left behind.
     pub fn write_png(&self, path: &Path) -> Result<()> {
-        replace_file(path, &self.encoded(path)?)
+        replace_file(path, &self.encode(path)?)
     }
 
     /// Encodes the picture as an 8-bit PNG.
@@ -121,11 +122,11 @@ impl Picture {
     /// # Errors
     /// If the encoder refuses the size.
     pub fn png(&self) -> Result<Vec<u8>> {
-        self.encoded(Path::new("the picture"))
+        self.encode(Path::new("the picture"))
     }
 
     /// Encodes the picture as an 8-bit PNG; `path` names it in errors.
-    fn encoded(&self, path: &Path) -> Result<Vec<u8>> {
+    fn encode(&self, path: &Path) -> Result<Vec<u8>> {
         png(self.bytes().as_flattened(), [self.width as u32, self.height() as u32], path)
     }
 }
@@ -150,15 +151,15 @@ fn is_direction(layer: &ExrLayer) -> bool {
 
 /// Returns the matrix from the colors of a file to linear Rec.709, and a remark if it is unknown.
 pub(super) fn to_rec709(file: &ExrFile) -> (Matrix, Option<String>) {
-    match matrix_of_file(file.attribute("colorInteropID"), file.chromaticities) {
+    match file_to_rec709(file.attribute("colorInteropID"), file.chromaticities) {
         Ok(matrix) => (matrix, None),
-        Err(said) => (IDENTITY, Some(format!("{said}: it is shown as linear Rec.709"))),
+        Err(remarks) => (IDENTITY, Some(format!("{remarks}: it is shown as linear Rec.709"))),
     }
 }
 
 /// Returns the 1st and 99th percentile of the finite values of a channel, without those that stand for nothing.
-fn span(channel: &Channel) -> (f64, f64) {
-    let values: Vec<f64> = channel.values().filter(|x| x.is_finite() && *x < NOTHING).collect();
+fn value_range(channel: &Channel) -> (f64, f64) {
+    let values: Vec<f64> = channel.values().filter(|x| x.is_finite() && *x < EMPTY_VALUE).collect();
     let [low, high] = [1, 99].map(|percent| percentile(values.clone(), percent));
     (low.unwrap_or(0.0), high.unwrap_or(1.0))
 }
@@ -170,9 +171,9 @@ pub(super) fn percentile(mut values: Vec<f64>, percent: usize) -> Option<f64> {
 }
 
 /// Maps values linearly, so that `low` becomes 0 and `high` becomes 1. If both are equal, they become the middle.
-fn stretched(channel: &Channel, low: f64, high: f64) -> Vec<f32> {
-    let of = |x: f64| if high > low { (x - low) / (high - low) } else { x - low + 0.5 };
-    channel.values().map(|x| shown(of(x)) as f32).collect()
+fn stretch(channel: &Channel, low: f64, high: f64) -> Vec<f32> {
+    let scale = |x: f64| if high > low { (x - low) / (high - low) } else { x - low + 0.5 };
+    channel.values().map(|x| shown(scale(x)) as f32).collect()
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ impl Tone {
     pub fn shown(self, light: f64) -> f64 {
         shown(match self {
             Self::Srgb => light,
-            Self::Hable => hable(2.0 * light.clamp(0.0, BEYOND_WHITE)) / hable(WHITE),
+            Self::Hable => hable(2.0 * light.clamp(0.0, MAX_LIGHT)) / hable(WHITE),
         })
     }
 }
@@ -39,7 +39,7 @@ pub(super) fn shown(value: f64) -> f64 {
 /// The argument of the curve, with the bias included, that is shown as white.
 const WHITE: f64 = 11.2;
 /// Light that is white whatever the curve. Anything beyond it is clamped, as the curve of infinity would be NaN.
-const BEYOND_WHITE: f64 = 1e6;
+const MAX_LIGHT: f64 = 1e6;
 
 /// Evaluates the curve with its six constants: shoulder strength, linear strength, linear angle, toe strength, toe
 /// numerator and toe denominator.

@@ -17,9 +17,9 @@ pub(super) struct AlbedoTable {
     /// Cosine-weighted mean over the hemisphere: the share for diffuse light.
     pub(super) mean: f64,
     /// Density of the places of sampled directions, linear between the table's places.
-    lobe: Vec<f64>,
-    /// Cumulative distribution of the lobe at each place.
-    below: Vec<f64>,
+    pdf: Vec<f64>,
+    /// Cumulative distribution of `pdf` at each place.
+    cdf: Vec<f64>,
 }
 
 impl AlbedoTable {
@@ -27,20 +27,20 @@ impl AlbedoTable {
     pub(super) fn new(alpha: f64, steps: usize, mut value: impl FnMut(f64) -> f64) -> Self {
         let zeros = vec![0.0; steps + 1];
         let span = libm::log1p(1.0 / alpha);
-        let mut table = Self { alpha, span, values: zeros.clone(), mean: 0.0, lobe: zeros.clone(), below: zeros };
+        let mut table = Self { alpha, span, values: zeros.clone(), mean: 0.0, pdf: zeros.clone(), cdf: zeros };
         table.values[0] = value(0.0);
         for step in 1..=steps {
             let place = step as f64 / steps as f64;
             let z = table.cosine(place);
             table.values[step] = value(z);
-            table.lobe[step] = table.values[step] * z * table.slope(place, z);
-            let area = 0.5 * (table.lobe[step - 1] + table.lobe[step]) / steps as f64;
-            table.below[step] = table.below[step - 1] + area;
+            table.pdf[step] = table.values[step] * z * table.slope(place, z);
+            let area = 0.5 * (table.pdf[step - 1] + table.pdf[step]) / steps as f64;
+            table.cdf[step] = table.cdf[step - 1] + area;
         }
         // From a share that is 0 everywhere, no direction is ever drawn.
-        let all = if table.below[steps] > 0.0 { table.below[steps] } else { 1.0 };
-        table.lobe.iter_mut().chain(&mut table.below).for_each(|x| *x /= all);
-        table.mean = table.integral();
+        let total = if table.cdf[steps] > 0.0 { table.cdf[steps] } else { 1.0 };
+        table.pdf.iter_mut().chain(&mut table.cdf).for_each(|x| *x /= total);
+        table.mean = table.hemisphere_mean();
         table
     }
 
@@ -64,7 +64,7 @@ impl AlbedoTable {
     }
 
     /// Returns twice the integral of the table times cosine over the cosine, within 1e-8 of that of its linear pieces.
-    fn integral(&self) -> f64 {
+    fn hemisphere_mean(&self) -> f64 {
         /// Nodes and half weights of the Gauss-Legendre rule of order 6.
         const GAUSS: [[f64; 2]; 3] =
             [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 8.0 / 18.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
@@ -86,23 +86,23 @@ impl AlbedoTable {
 
     /// Returns the share at a place.
     pub(super) fn at(&self, place: f64) -> f64 {
-        between(&self.values, place)
+        interpolate(&self.values, place)
     }
 
     /// Returns the share at the place of the cosine `z`, and the density per steradian with which [`AlbedoTable::draw`]
     /// draws directions there.
     pub(super) fn value_and_density(&self, place: f64, z: f64) -> [f64; 2] {
         let place = place.max(f64::MIN_POSITIVE);
-        [self.at(place), between(&self.lobe, place) / (TAU * self.slope(place, z))]
+        [self.at(place), interpolate(&self.pdf, place) / (TAU * self.slope(place, z))]
     }
 
     /// Samples a direction in the frame in which +z is the normal, nearly in proportion to the share times the cosine:
     /// its place is drawn from a density that is linear between the places of the table.
     pub(super) fn draw(&self, u: [f64; 2]) -> DVec3 {
         let steps = self.steps();
-        let step = self.below.partition_point(|&below| below <= u[1]).clamp(1, steps) - 1;
-        let [low, high] = [self.lobe[step], self.lobe[step + 1]];
-        let area = (u[1] - self.below[step]).max(0.0) * steps as f64;
+        let step = self.cdf.partition_point(|&cdf| cdf <= u[1]).clamp(1, steps) - 1;
+        let [low, high] = [self.pdf[step], self.pdf[step + 1]];
+        let area = (u[1] - self.cdf[step]).max(0.0) * steps as f64;
         // The root of low x + (high - low) x^2 / 2 = area, in the form that does not cancel.
         let root = (low * low + 2.0 * (high - low) * area).max(0.0).sqrt();
         let x = if area > 0.0 { (2.0 * area / (low + root)).min(1.0) } else { 0.0 };
@@ -113,9 +113,9 @@ impl AlbedoTable {
 }
 
 /// Interpolates a table linearly between its places.
-fn between(table: &[f64], place: f64) -> f64 {
-    let (step, part) = step_at(place, table.len() - 1);
-    table[step] + part * (table[step + 1] - table[step])
+fn interpolate(table: &[f64], place: f64) -> f64 {
+    let (step, fraction) = step_at(place, table.len() - 1);
+    table[step] + fraction * (table[step + 1] - table[step])
 }
 
 /// Returns the step in which a place in 0..1 lies, and the fraction of the step below the place.

@@ -52,7 +52,7 @@ impl<const N: usize> Branch<N> {
     /// Returns where its light arrives from, for the lanes that are present on the ray.
     #[inline(always)]
     pub fn incoming(&self, present: &Lanes<N>) -> Incoming {
-        let lanes = (self.share * *present).not_zero();
+        let lanes = (self.share * *present).nonzero();
         Incoming { wi: self.wi, crosses: self.crosses, single: self.pdf.is_none(), lanes }
     }
 
@@ -68,7 +68,7 @@ impl<const N: usize> Branch<N> {
     }
 
     /// Returns whether both are the same single direction.
-    pub(super) fn is_same_way(&self, other: &Self) -> bool {
+    pub(super) fn has_same_direction(&self, other: &Self) -> bool {
         let single = self.pdf.is_none() && other.pdf.is_none();
         single && self.wi == other.wi && self.crosses == other.crosses
     }
@@ -107,7 +107,7 @@ impl<const N: usize> Straight<N> {
     }
 
     /// Combines what two materials let pass, each of which covers a share of a surface.
-    pub(super) fn of_both(parts: [Option<Self>; 2], shares: [Lanes<N>; 2]) -> Option<Self> {
+    pub(super) fn combine(parts: [Option<Self>; 2], shares: [Lanes<N>; 2]) -> Option<Self> {
         if parts.iter().all(Option::is_none) {
             return None;
         }

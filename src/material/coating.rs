@@ -28,7 +28,7 @@ pub struct Coating<S> {
     /// From the outside inward.
     pub layers: Vec<CoatingLayer<S>>,
     /// Averages of the film over directions, from outside and from inside, by the indices around it.
-    known: [LaneCache<[f64; 4], FilmAverages>; 2],
+    cached: [LaneCache<[f64; 4], FilmAverages>; 2],
     /// Tables of these averages by thickness, if a single layer varies over the surface.
     by_thickness: [LaneCache<[f64; 4], FilmTable>; 2],
 }
@@ -49,8 +49,8 @@ pub struct CoatingLayer<S> {
 impl<S> Coating<S> {
     /// Makes a coating from layers in order from the outside inward.
     pub fn new(layers: Vec<CoatingLayer<S>>) -> Self {
-        let known = [LaneCache::new(), LaneCache::new()];
-        Self { layers, known, by_thickness: [LaneCache::new(), LaneCache::new()] }
+        let cached = [LaneCache::new(), LaneCache::new()];
+        Self { layers, cached, by_thickness: [LaneCache::new(), LaneCache::new()] }
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Coating<T> {
@@ -77,16 +77,16 @@ impl Coating<Table> {
         inside: bool,
     ) -> LocalCoating<'a, N> {
         let read = |layer: &CoatingLayer<Table>| context.read(&layer.thickness);
-        let mut all_varying = (0..self.layers.len()).filter(|&number| self.layers[number].thickness.varies());
-        let first = all_varying.next();
+        let mut varying_layers = (0..self.layers.len()).filter(|&number| self.layers[number].thickness.varies());
+        let first = varying_layers.next();
         let thicknesses = if first.is_none() { Vec::new() } else { self.layers.iter().map(read).collect() };
-        let varying = first.filter(|_| all_varying.next().is_none());
+        let varying = first.filter(|_| varying_layers.next().is_none());
         LocalCoating { coating: self, context, inside, thicknesses, varying }
     }
 }
 
 /// A result of [`Stack::shares`], and what it was computed for.
-struct Answer {
+struct CachedShares {
     /// The indices on both sides, and the cosine times the first.
     boundary: [f64; 4],
     stack: Stack,
@@ -94,22 +94,22 @@ struct Answer {
 }
 
 /// The last two results for a lane: a coat is crossed in two directions, one of which stays the same.
-struct Answers {
-    kept: [Option<Answer>; 2],
+struct RecentShares {
+    entries: [Option<CachedShares>; 2],
     newest: usize,
 }
 
 thread_local! {
-    static LAST: RefCell<[Answers; MAX_LANES]> =
-        const { RefCell::new([const { Answers { kept: [const { None }; 2], newest: 0 } }; MAX_LANES]) };
+    static SHARES_CACHE: RefCell<[RecentShares; MAX_LANES]> =
+        const { RefCell::new([const { RecentShares { entries: [const { None }; 2], newest: 0 } }; MAX_LANES]) };
 }
 
 /// Averages of a film over directions, borrowed or boxed, since they are too large to copy.
 pub(super) enum Averages<'a> {
     /// Averages that are equal everywhere.
-    Known(&'a FilmAverages),
+    Cached(&'a FilmAverages),
     /// Averages for one place or one sample.
-    Made(Box<FilmAverages>),
+    Computed(Box<FilmAverages>),
 }
 
 impl Deref for Averages<'_> {
@@ -117,8 +117,8 @@ impl Deref for Averages<'_> {
 
     fn deref(&self) -> &FilmAverages {
         match self {
-            Self::Known(averages) => averages,
-            Self::Made(averages) => averages,
+            Self::Cached(averages) => averages,
+            Self::Computed(averages) => averages,
         }
     }
 }
@@ -150,8 +150,8 @@ impl<'a, const N: usize> LocalCoating<'a, N> {
         let make_here = || make(&self.stack(lane));
         let side = usize::from(inside);
         if self.thicknesses.is_empty() {
-            let known = coating.known[side].get(draw, lane, indices, make_here);
-            return known.map_or_else(|| Averages::Made(Box::new(make_here())), Averages::Known);
+            let cached = coating.cached[side].get(draw, lane, indices, make_here);
+            return cached.map_or_else(|| Averages::Computed(Box::new(make_here())), Averages::Cached);
         }
         let read = || {
             let number = self.varying?;
@@ -159,14 +159,14 @@ impl<'a, const N: usize> LocalCoating<'a, N> {
             let new = || FilmTable::new(&layer, self.context.wave(lane)[0], coating.layers[number].thickness.range().1);
             let table = coating.by_thickness[side].get(draw, lane, indices, new)?;
             table.read(layer.thickness_nm, |thickness_nm| {
-                let layers = self.in_order().map(|at| match self.layer(at, lane) {
+                let layers = self.layer_numbers().map(|at| match self.layer(at, lane) {
                     layer if at == number => Layer { thickness_nm, ..layer },
                     layer => layer,
                 });
                 make(&Stack::new(self.context.wave(lane), layers))
             })
         };
-        Averages::Made(Box::new(read().unwrap_or_else(make_here)))
+        Averages::Computed(Box::new(read().unwrap_or_else(make_here)))
     }
 
     /// Returns what the layers do to a lane between index `n1` and `n2` beyond: [`Stack::shares`].
@@ -175,26 +175,26 @@ impl<'a, const N: usize> LocalCoating<'a, N> {
     /// mirrored light, and for the polarization of each.
     pub(super) fn shares(&self, lane: usize, n1: f64, n2: Complex, q1: f64) -> StackShares {
         let boundary = [n1, n2.re, n2.im, q1];
-        LAST.with_borrow_mut(|last| {
-            let Answers { kept, newest } = &mut last[lane];
-            let is_it = |answer: &&Answer| {
-                answer.boundary == boundary && answer.stack.is(self.context.wave(lane), self.layers(lane))
+        SHARES_CACHE.with_borrow_mut(|last| {
+            let RecentShares { entries, newest } = &mut last[lane];
+            let matches = |entry: &&CachedShares| {
+                entry.boundary == boundary && entry.stack.is(self.context.wave(lane), self.layers(lane))
             };
-            let known = |place: usize| Some((place, kept[place].as_ref().filter(is_it)?.shares));
-            if let Some((place, shares)) = known(0).or_else(|| known(1)) {
+            let cached = |place: usize| Some((place, entries[place].as_ref().filter(matches)?.shares));
+            if let Some((place, shares)) = cached(0).or_else(|| cached(1)) {
                 *newest = place;
                 return shares;
             }
             let stack = self.stack(lane);
             let shares = stack.shares(n1, n2, q1);
             *newest = 1 - *newest;
-            kept[*newest] = Some(Answer { boundary, stack, shares });
+            entries[*newest] = Some(CachedShares { boundary, stack, shares });
             shares
         })
     }
 
     /// Returns the shares of light that meets the layers at an angle with cosine `cos`.
-    pub(super) fn at_cosine(&self, lane: usize, n1: f64, n2: impl Into<Complex>, cos: f64) -> StackShares {
+    pub(super) fn shares_at_cosine(&self, lane: usize, n1: f64, n2: impl Into<Complex>, cos: f64) -> StackShares {
         self.shares(lane, n1, n2.into(), n1 * cos.clamp(0.0, 1.0))
     }
 
@@ -204,11 +204,11 @@ impl<'a, const N: usize> LocalCoating<'a, N> {
     }
 
     fn layers(&self, lane: usize) -> impl Iterator<Item = Layer> {
-        self.in_order().map(move |number| self.layer(number, lane))
+        self.layer_numbers().map(move |number| self.layer(number, lane))
     }
 
     /// Returns the numbers of the layers, the viewer's side first.
-    fn in_order(&self) -> impl Iterator<Item = usize> {
+    fn layer_numbers(&self) -> impl Iterator<Item = usize> {
         let count = self.coating.layers.len();
         (0..count).map(move |place| if self.inside { count - 1 - place } else { place })
     }

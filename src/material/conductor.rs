@@ -1,12 +1,12 @@
 use std::array;
 
 use super::coating::LocalCoating;
-use super::degree::{LANES, degree, largest, of_all_lanes};
+use super::degree::{MAX_EVALUATED_LANES, combined_degree, degree, max_degree};
 use super::film_averages::{FilmAverages, mean};
 use super::fresnel::conductor_reflectances;
 use super::lane_cache::LaneCache;
-use super::last::Last;
-use super::roughness::above;
+use super::last::LastResult;
+use super::roughness::to_local_above;
 use super::{
     Block, Branch, Coating, Incoming, Mueller, PolarizedShare, RoughReflection, RoughSurface, Roughness,
     ScatterContext, conductor_reflectance,
@@ -53,7 +53,7 @@ impl Conductor<Table> {
     pub(super) fn scatter<const N: usize>(&self, context: &ScatterContext<N>, u: [f64; 2]) -> Option<Branch<N>> {
         let Some(surface) = self.roughness.surface() else { return Some(self.mirror(context)) };
         let frame = Frame::about(context.normal);
-        let reflection = surface.scatter(above(&frame, context.wo), u)?;
+        let reflection = surface.scatter(to_local_above(&frame, context.wo), u)?;
         let share = self.reflected(context, surface, &reflection, 1.0 / reflection.pdf);
         Some(Branch::drawn(unit(frame.to_world(reflection.wi)), share, reflection.pdf))
     }
@@ -68,10 +68,10 @@ impl Conductor<Table> {
     fn mirror<const N: usize>(&self, context: &ScatterContext<N>) -> Branch<N> {
         let (local, cos) = (self.local(context), context.wo.dot(context.normal));
         let reflected = local.reflected(cos);
-        let share = Lanes::from_fn(|i| mean_of(reflected[i]) as f32);
+        let share = Lanes::from_fn(|i| unpolarized(reflected[i]) as f32);
         let polarization = match local.coating {
-            None => largest(reflected.into_iter().map(degree)),
-            Some(_) => of_all_lanes(reflected.into_iter()) as f32,
+            None => max_degree(reflected.into_iter().map(degree)),
+            Some(_) => combined_degree(reflected.into_iter()) as f32,
         };
         Branch::mirrored(context, share, polarization)
     }
@@ -90,20 +90,20 @@ impl Conductor<Table> {
         reflection: &RoughReflection,
         factor: f64,
     ) -> Lanes<N> {
-        let (local, mut last) = (self.local(context), Last::NONE);
+        let (local, mut last) = (self.local(context), LastResult::NONE);
         let single = local.reflected(reflection.cos);
         Lanes::from_fn(|i| {
             if context.present[i] == 0.0 {
                 return 0.0;
             }
             let multiple = match &local.coating {
-                Some(coating) => surface.multiply_reflected(coated_mean(coating, i, local.indices(i))),
-                None => last.of(local.indices(i), |indices| {
+                Some(coating) => surface.multiply_reflected(coated_mean_reflectance(coating, i, local.indices(i))),
+                None => last.get_or_make(local.indices(i), |indices| {
                     let multiple = || surface.multiply_reflected(mean_reflectance(indices));
                     self.multiple.get(context.draw, i, indices, multiple).copied().unwrap_or_else(multiple)
                 }),
             };
-            (factor * (mean_of(single[i]) * reflection.single + multiple * reflection.multiple)) as f32
+            (factor * (unpolarized(single[i]) * reflection.single + multiple * reflection.multiple)) as f32
         })
     }
 
@@ -112,7 +112,9 @@ impl Conductor<Table> {
     pub(super) fn degree_of_scattered<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> f32 {
         let Some(h) = (context.wo + wi).try_normalize() else { return 0.0 };
         let (local, cos) = (self.local(context), context.wo.dot(h));
-        largest((0..N).step_by(N.div_ceil(LANES)).map(|lane| degree(local.reflected_of(lane, cos))))
+        max_degree(
+            (0..N).step_by(N.div_ceil(MAX_EVALUATED_LANES)).map(|lane| degree(local.lane_reflectance(lane, cos))),
+        )
     }
 
     /// Sets the Mueller matrix of the facet that mirrors the light. What is reflected more than once leaves
@@ -133,10 +135,10 @@ impl Conductor<Table> {
             }
             _ => return *mueller = Mueller::NONE,
         };
-        let (local, mut last) = (self.local(context), Last::NONE);
-        mueller.set_lanes(axis, incoming.lanes, |lane| match local.coated(lane, cos) {
+        let (local, mut last) = (self.local(context), LastResult::NONE);
+        mueller.set_lanes(axis, incoming.lanes, |lane| match local.coated_reflectance(lane, cos) {
             Some(share) => share.block().times(single),
-            None => last.of(local.indices(lane), |[n1, n, k]| Block::of_metal(n1, n, k, cos).times(single)),
+            None => last.get_or_make(local.indices(lane), |[n1, n, k]| Block::of_metal(n1, n, k, cos).times(single)),
         });
     }
 }
@@ -157,18 +159,18 @@ impl<const N: usize> LocalConductor<'_, N> {
 
     /// Returns the reflectances (s, p) of each lane on the ray, at an angle with cosine `cos`.
     fn reflected(&self, cos: f64) -> [[f64; 2]; N] {
-        let is_here = |lane: usize| self.context.present[lane] != 0.0;
+        let is_present = |lane: usize| self.context.present[lane] != 0.0;
         if self.coating.is_some() {
-            return array::from_fn(|lane| if is_here(lane) { self.reflected_of(lane, cos) } else { [0.0; 2] });
+            return array::from_fn(|lane| if is_present(lane) { self.lane_reflectance(lane, cos) } else { [0.0; 2] });
         }
         let n1 = array::from_fn(|lane| self.context.incident_of(lane));
         let [s, p] = conductor_reflectances(&n1, [&self.n, &self.k], cos);
-        array::from_fn(|lane| if is_here(lane) { [s[lane], p[lane]] } else { [0.0; 2] })
+        array::from_fn(|lane| if is_present(lane) { [s[lane], p[lane]] } else { [0.0; 2] })
     }
 
     /// Returns the reflectances (s, p) of one lane, whether or not it is on the ray.
-    fn reflected_of(&self, lane: usize, cos: f64) -> [f64; 2] {
-        match self.coated(lane, cos) {
+    fn lane_reflectance(&self, lane: usize, cos: f64) -> [f64; 2] {
+        match self.coated_reflectance(lane, cos) {
             Some(PolarizedShare { s, p, .. }) => [s, p],
             None => {
                 let [n1, n, k] = self.indices(lane);
@@ -178,22 +180,22 @@ impl<const N: usize> LocalConductor<'_, N> {
     }
 
     /// Returns the reflectance of the coated metal for one lane, or None without a coating.
-    fn coated(&self, lane: usize, cos: f64) -> Option<PolarizedShare> {
+    fn coated_reflectance(&self, lane: usize, cos: f64) -> Option<PolarizedShare> {
         let [n1, n, k] = self.indices(lane);
-        Some(self.coating.as_ref()?.at_cosine(lane, n1, Complex::new(n, -k), cos).reflected)
+        Some(self.coating.as_ref()?.shares_at_cosine(lane, n1, Complex::new(n, -k), cos).reflected)
     }
 }
 
 /// Returns the reflectance of unpolarized light from those of s and p.
-fn mean_of([s, p]: [f64; 2]) -> f64 {
+fn unpolarized([s, p]: [f64; 2]) -> f64 {
     0.5 * (s + p)
 }
 
 /// Returns a coated metal's reflectance of diffuse light.
-fn coated_mean<const N: usize>(local: &LocalCoating<N>, lane: usize, [n1, n, k]: [f64; 3]) -> f64 {
+fn coated_mean_reflectance<const N: usize>(local: &LocalCoating<N>, lane: usize, [n1, n, k]: [f64; 3]) -> f64 {
     let averages = local.averages(lane, false, [n1, n, k, 0.0], |stack| {
         let at = |cos: f64| stack.shares(n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected.mean();
-        FilmAverages::of_mean(mean(stack.is_slow(), 1.0, |cos| [at(cos), 0.0]))
+        FilmAverages::from_mean(mean(stack.varies_slowly(), 1.0, |cos| [at(cos), 0.0]))
     });
     averages.mean[0]
 }

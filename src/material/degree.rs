@@ -1,7 +1,7 @@
 //! The degree to which light leaves a surface polarized.
 
 /// Maximum number of lanes to evaluate where indices vary smoothly from lane to lane.
-pub(super) const LANES: usize = 8;
+pub(super) const MAX_EVALUATED_LANES: usize = 8;
 
 /// Returns the degree |s - p| / (s + p) of light whose polarizations are reduced to s and p.
 pub(super) fn degree([s, p]: [f64; 2]) -> f64 {
@@ -10,11 +10,11 @@ pub(super) fn degree([s, p]: [f64; 2]) -> f64 {
 
 /// Returns |s - p| / (s + p) with both sums taken over all lanes. Under a film a single lane may be nearly dark and
 /// fully polarized, which does not represent the light of the others.
-pub(super) fn of_all_lanes(lanes: impl Iterator<Item = [f64; 2]>) -> f64 {
+pub(super) fn combined_degree(lanes: impl Iterator<Item = [f64; 2]>) -> f64 {
     let [difference, sum] = lanes.fold([0.0; 2], |[d, sum], [s, p]| [d + (s - p).abs(), sum + (s + p)]);
     if sum > 0.0 { difference / sum } else { 0.0 }
 }
 
-pub(super) fn largest(degrees: impl Iterator<Item = f64>) -> f32 {
+pub(super) fn max_degree(degrees: impl Iterator<Item = f64>) -> f32 {
     degrees.fold(0.0, f64::max) as f32
 }

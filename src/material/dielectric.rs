@@ -1,5 +1,5 @@
 use super::coated_boundary::{self, block_at};
-use super::last::Last;
+use super::last::LastResult;
 use super::refractions::Refractions;
 use super::rough_dielectric::{RoughBoundary, parts};
 use super::{
@@ -67,22 +67,22 @@ impl Dielectric<Table> {
         branches: &mut Vec<Branch<N>>,
     ) {
         match (self.roughness.interface(), &self.coating) {
-            (Some(interface), _) => self.rough(interface).scatter(context, u, branches),
+            (Some(interface), _) => self.rough_boundary(interface).scatter(context, u, branches),
             (None, Some(coating)) => {
                 coated_boundary::scatter(coating, [&self.reflectance, &self.transmittance], context, branches);
             }
             (None, None) => match context.one_direction() {
-                Some(directions) => self.scatter_as_one(context, directions, branches),
+                Some(directions) => self.scatter_in_one_direction(context, directions, branches),
                 None => self.scatter_smooth(context, branches),
             },
         }
     }
 
     pub(super) fn evaluate<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
-        self.rough(self.roughness.interface()?).evaluate(context, wi)
+        self.rough_boundary(self.roughness.interface()?).evaluate(context, wi)
     }
 
-    fn rough<'a>(&'a self, interface: &'a RoughInterface) -> RoughBoundary<'a> {
+    fn rough_boundary<'a>(&'a self, interface: &'a RoughInterface) -> RoughBoundary<'a> {
         let (reflectance, transmittance) = (&self.reflectance, &self.transmittance);
         RoughBoundary { interface, coating: self.coating.as_ref(), reflectance, transmittance }
     }
@@ -98,7 +98,7 @@ impl Dielectric<Table> {
     /// Returns the degree for the facet of rough glass that light from `wi` meets: Walter et al. 2007, *Microfacet
     /// Models for Refraction through Rough Surfaces*, equations 13 and 16.
     pub(super) fn degree_of_scattered<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> f32 {
-        let (mut last, mut most) = (None, 0.0_f64);
+        let (mut last, mut max_degree) = (None, 0.0_f64);
         let local = self.coating.as_ref().map(|coating| coating.local(context, context.from_inside));
         for lane in 0..N {
             let pair @ [n1, n2] = [context.incident_of(lane), context.beyond_of(lane)];
@@ -109,16 +109,16 @@ impl Dielectric<Table> {
             let h = if crosses { (context.wo * n1 + wi * n2) * (n1 - n2).signum() } else { context.wo + wi };
             let Some(h) = h.try_normalize() else { continue };
             if let Some(local) = &local {
-                let shares = local.at_cosine(lane, n1, n2, context.wo.dot(h));
+                let shares = local.shares_at_cosine(lane, n1, n2, context.wo.dot(h));
                 let share = if crosses { shares.refracted } else { shares.reflected };
-                most = most.max(share.degree());
+                max_degree = max_degree.max(share.degree());
                 continue;
             }
             let facet = Interface::new(n1, n2, context.wo.dot(h));
             let degree = if crosses { facet.polarization_refracted } else { facet.polarization_reflected };
-            most = most.max(degree.abs());
+            max_degree = max_degree.max(degree.abs());
         }
-        most as f32
+        max_degree as f32
     }
 
     /// Adds one reflected branch with all lanes, and one refracted branch per distinct pair of refracting indices. If
@@ -130,12 +130,12 @@ impl Dielectric<Table> {
         let crossing = if parts { tint * context.draw.parting() } else { tint };
         let cos = context.wo.dot(context.normal);
         let (mut reflected, mut polarization) = (Lanes::ZERO, 0.0);
-        let (mut refracted, mut last) = (Refractions::new(context, parts, branches), Last::NONE);
+        let (mut refracted, mut last) = (Refractions::new(context, parts, branches), LastResult::NONE);
         let own = context.own_transmittance(cos);
         for lane in (0..N).filter(|&lane| context.present[lane] != 0.0) {
-            let pair @ [here, beyond] = context.refracting(lane);
+            let pair @ [here, beyond] = context.ray_indices(lane);
             let [n1, n2] = [context.incident_of(lane), context.beyond_of(lane)];
-            let interface = last.of(pair, |[here, beyond]| Interface::new(here, beyond, cos));
+            let interface = last.get_or_make(pair, |[here, beyond]| Interface::new(here, beyond, cos));
             let [reflects, lets_through] = match &own {
                 Some(own) if here != beyond || n1 != n2 => [1.0 - own[lane], own[lane]],
                 _ => [interface.reflectance, interface.transmittance],
@@ -157,7 +157,7 @@ impl Dielectric<Table> {
     }
 
     /// Adds one reflected and one refracted branch, in which each lane has its own shares.
-    fn scatter_as_one<const N: usize>(
+    fn scatter_in_one_direction<const N: usize>(
         &self,
         context: &ScatterContext<N>,
         [here, beyond]: [f64; 2],
@@ -200,7 +200,7 @@ impl Dielectric<Table> {
         mueller: &mut Mueller<N>,
     ) {
         match self.roughness.interface() {
-            Some(interface) if !incoming.single => self.rough(interface).mueller(context, incoming, mueller),
+            Some(interface) if !incoming.single => self.rough_boundary(interface).mueller(context, incoming, mueller),
             Some(_) => mueller.set_unchanged(context.present * context.read(&self.transmittance)),
             None => self.mueller_of_smooth(context, incoming, mueller),
         }
@@ -222,9 +222,10 @@ impl Dielectric<Table> {
                 block_at(&local, context, lane, cos, crosses).times(f64::from(tint[lane]))
             });
         }
-        let mut last = Last::NONE;
+        let mut last = LastResult::NONE;
         mueller.set_lanes(axis, incoming.lanes, |lane| {
-            let block = last.of(context.own_boundary(lane, cos), |boundary| Block::at_boundary(boundary, crosses));
+            let block =
+                last.get_or_make(context.own_boundary(lane, cos), |boundary| Block::at_boundary(boundary, crosses));
             block.times(f64::from(tint[lane]))
         });
     }

@@ -1,7 +1,7 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use super::{Branch, Fluorescence, ScatterContext};
-use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
+use crate::math::{DVec3, Frame, sample_cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
 
 /// A matte surface: equal radiance in every direction, on both sides (Lambert 1760).
@@ -26,7 +26,7 @@ impl<S> Diffuse<S> {
 
 impl Diffuse<Table> {
     pub(super) fn scatter<const N: usize>(&self, context: &ScatterContext<N>, u: [f64; 2]) -> Branch<N> {
-        let local = cosine_hemisphere(u);
+        let local = sample_cosine_hemisphere(u);
         let wi = unit(Frame::about(context.normal).to_world(local));
         Branch::drawn(wi, context.read(&self.reflectance), local.z * FRAC_1_PI)
     }

@@ -30,11 +30,11 @@ impl std::ops::Add for BsdfValue {
 pub struct Facet {
     pub(super) h: DVec3,
     /// The directions in which it reflects and refracts light.
-    pub(super) ways: [DVec3; 2],
+    pub(super) directions: [DVec3; 2],
     /// Shares of the light that leave in these directions.
     pub(super) single: [f64; 2],
     /// Shares that would leave in these directions if it reflected, or transmitted, all light.
-    pub(super) all: [f64; 2],
+    pub(super) unshadowed: [f64; 2],
     /// Share that meets a second facet.
     pub(super) multiple: f64,
     /// Cosines of the angles to the facet's normal at which light meets it and continues beyond it.
@@ -42,7 +42,7 @@ pub struct Facet {
 }
 
 impl Facet {
-    /// Makes the facet with normal `h` between two indices, seen from `wo`. `known` is one of its two directions, if
+    /// Makes the facet with normal `h` between two indices, seen from `wo`. `known_wi` is one of its two directions, if
     /// that is known already.
     #[inline(always)]
     pub(super) fn new(
@@ -50,20 +50,20 @@ impl Facet {
         [n1, n2]: [f64; 2],
         straight: f64,
         [wo, h]: [DVec3; 2],
-        known: Option<DVec3>,
+        known_wi: Option<DVec3>,
     ) -> Self {
         let interface = Interface::new(n1, n2, wo.dot(h));
         let (reflected, crossing) = (interface.reflectance, interface.transmittance);
-        let above = known.filter(|wi| wi.z > 0.0).unwrap_or_else(|| reflect(wo, h));
-        let beyond = known.filter(|wi| wi.z < 0.0).unwrap_or_else(|| interface.refract(wo, h));
+        let above = known_wi.filter(|wi| wi.z > 0.0).unwrap_or_else(|| reflect(wo, h));
+        let beyond = known_wi.filter(|wi| wi.z < 0.0).unwrap_or_else(|| interface.refract(wo, h));
         let [left, missing] = facets.unshadowed_and_shadowed(wo, above);
         let [passed, lost] =
             if crossing > 0.0 && beyond.z < 0.0 { facets.passed(wo, beyond, straight) } else { [0.0, 1.0] };
         Self {
             h,
-            ways: [above, beyond],
+            directions: [above, beyond],
             single: [reflected * left, crossing * passed],
-            all: [left, passed],
+            unshadowed: [left, passed],
             multiple: reflected * missing + crossing * lost,
             cos: [wo.dot(h), interface.cos_beyond],
         }
@@ -71,8 +71,8 @@ impl Facet {
 
     /// Returns its contribution in one of its two directions. `pdf` is the density of that direction over the visible
     /// facets.
-    pub(super) fn flow(&self, side: usize, pdf: f64) -> BsdfValue {
-        let (value, all) = (pdf * self.single[side], pdf * self.all[side]);
-        BsdfValue { value, pdf: pdf * (self.single[0] + self.single[1]), facet: all, cos: self.cos[0] }
+    pub(super) fn bsdf(&self, side: usize, pdf: f64) -> BsdfValue {
+        let (value, unshadowed) = (pdf * self.single[side], pdf * self.unshadowed[side]);
+        BsdfValue { value, pdf: pdf * (self.single[0] + self.single[1]), facet: unshadowed, cos: self.cos[0] }
     }
 }

@@ -78,8 +78,8 @@ impl Facets {
     #[inline(always)]
     pub fn passed(&self, wo: DVec3, wi: DVec3, straight: f64) -> [f64; 2] {
         let ([seen, hidden], [from, _]) = (self.masking(wi), self.masking(wo));
-        let [most, least] = if seen < from { [seen / from, 1.0 - seen / from] } else { [1.0, 0.0] };
-        [seen + straight * (most - seen), hidden + straight * (least - hidden)]
+        let [max_seen, min_hidden] = if seen < from { [seen / from, 1.0 - seen / from] } else { [1.0, 0.0] };
+        [seen + straight * (max_seen - seen), hidden + straight * (min_hidden - hidden)]
     }
 
     /// Returns the share of the light from a visible facet toward `wi` that leaves, G2 / G1, and the share that meets
@@ -100,18 +100,18 @@ impl Facets {
     /// those that mirror straight up, after stretching to a hemisphere, down to upright ones.
     pub fn visible_normal(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         let (sin, cos) = libm::sincos(TAU * u[0]);
-        self.visible_normal_from_end(wo, [cos, sin], 1.0 - u[1])
+        self.visible_normal_from_complement(wo, [cos, sin], 1.0 - u[1])
     }
 
     /// Computes `visible_normal` from `left` = 1 - `u[1]`, precise even among the last facets, where `left` is small.
     #[inline(always)]
-    fn visible_normal_from_end(&self, wo: DVec3, around: [f64; 2], left: f64) -> DVec3 {
+    fn visible_normal_from_complement(&self, wo: DVec3, azimuth: [f64; 2], left: f64) -> DVec3 {
         let slant = self.slant(wo);
         let stretched = DVec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z) / slant;
         let height = 1.0 + stretched.z;
         let (down, up) = ((1.0 - left) * height, 1.0 - stretched.z + left * height);
         let sin = (down * up).max(0.0).sqrt();
-        let [x, y] = around;
+        let [x, y] = azimuth;
         let cap = DVec3::new(stretched.x + sin * x, stretched.y + sin * y, left * height);
         DVec3::new(self.alpha * cap.x, self.alpha * cap.y, cap.z).normalize()
     }
@@ -120,7 +120,7 @@ impl Facets {
     pub(super) fn visible(&self, ratio: f64) -> VisibleFacets {
         VisibleFacets {
             facets: *self,
-            rows: (0..places(ratio)).step_by(ROW).map(|first| Row::new(first, ratio)).collect(),
+            rows: (0..facet_count(ratio)).step_by(ROW_LENGTH).map(|first| Row::new(first, ratio)).collect(),
         }
     }
 }
@@ -129,13 +129,13 @@ impl Facets {
 ///
 /// Vector instructions process several facets at once if nothing is called and only values at hand are read. So
 /// implementations are `#[inline(always)]`, which closures cannot be, and hold no references.
-pub(super) trait OfFacet {
+pub(super) trait FacetFunction {
     /// Returns its value for the facet of normal `h`, seen from `wo`.
-    fn of(&self, wo: DVec3, h: DVec3) -> f64;
+    fn value_at(&self, wo: DVec3, h: DVec3) -> f64;
 }
 
 /// Number of visible facets that are processed at once.
-const ROW: usize = 16;
+const ROW_LENGTH: usize = 16;
 
 /// Visible facets for a quadrature from any direction.
 pub(super) struct VisibleFacets {
@@ -146,29 +146,29 @@ pub(super) struct VisibleFacets {
 /// A block of sample points for visible facets, independent of the viewing direction.
 struct Row {
     /// Cosine and sine of the angle around.
-    around: [[f64; ROW]; 2],
+    azimuth: [[f64; ROW_LENGTH]; 2],
     /// Square root of `left` = 1 - `u[1]`. This is dense among upright facets, which are few and shadow most.
-    v: [f64; ROW],
+    v: [f64; ROW_LENGTH],
     /// Weights, which sum to 1 over all rows.
-    weights: [f64; ROW],
+    weights: [f64; ROW_LENGTH],
 }
 
 impl Row {
     fn new(first: u32, ratio: f64) -> Self {
-        let places = f64::from(places(ratio));
-        let mut row = Self { around: [[0.0; ROW]; 2], v: [0.0; ROW], weights: [0.0; ROW] };
-        for (i, place) in (first..).take(ROW).map(f64::from).enumerate() {
+        let facet_count = f64::from(facet_count(ratio));
+        let mut row = Self { azimuth: [[0.0; ROW_LENGTH]; 2], v: [0.0; ROW_LENGTH], weights: [0.0; ROW_LENGTH] };
+        for (i, place) in (first..).take(ROW_LENGTH).map(f64::from).enumerate() {
             // A golden-ratio lattice: none of its rows can follow the curve along which total reflection sets in.
-            (row.around[1][i], row.around[0][i]) = libm::sincos(TAU * (place * GOLDEN).fract());
-            row.v[i] = (place + 0.5) / places;
-            row.weights[i] = 2.0 * row.v[i] / places;
+            (row.azimuth[1][i], row.azimuth[0][i]) = libm::sincos(TAU * (place * GOLDEN).fract());
+            row.v[i] = (place + 0.5) / facet_count;
+            row.weights[i] = 2.0 * row.v[i] / facet_count;
         }
         row
     }
 
     #[inline(always)]
     fn normal(&self, facets: &Facets, wo: DVec3, i: usize) -> DVec3 {
-        facets.visible_normal_from_end(wo, [self.around[0][i], self.around[1][i]], self.v[i] * self.v[i])
+        facets.visible_normal_from_complement(wo, [self.azimuth[0][i], self.azimuth[1][i]], self.v[i] * self.v[i])
     }
 }
 
@@ -179,12 +179,12 @@ impl VisibleFacets {
         let wo = direction(z);
         self.rows
             .iter()
-            .flat_map(move |row| (0..ROW).map(move |i| ([wo, row.normal(&self.facets, wo, i)], row.weights[i])))
+            .flat_map(move |row| (0..ROW_LENGTH).map(move |i| ([wo, row.normal(&self.facets, wo, i)], row.weights[i])))
     }
 
     /// Returns the mean of a function over the facets visible from the cosine `z`.
-    pub(super) fn mean(&self, z: f64, of: impl OfFacet) -> f64 {
-        Instructions::best().run(Mean { facets: self.facets, rows: &self.rows, wo: direction(z), of })
+    pub(super) fn mean(&self, z: f64, function: impl FacetFunction) -> f64 {
+        Instructions::best().run(Mean { facets: self.facets, rows: &self.rows, wo: direction(z), function })
     }
 }
 
@@ -198,20 +198,20 @@ struct Mean<'a, F> {
     facets: Facets,
     rows: &'a [Row],
     wo: DVec3,
-    of: F,
+    function: F,
 }
 
-impl<F: OfFacet> Computation for Mean<'_, F> {
+impl<F: FacetFunction> Computation for Mean<'_, F> {
     type Output = f64;
 
     #[inline(always)]
     fn run<V: Vectors>(self, _: V) -> f64 {
-        let Self { facets, rows, wo, of } = self;
+        let Self { facets, rows, wo, function } = self;
         let mut sum = 0.0;
         for row in rows {
-            let mut parts = [0.0; ROW];
+            let mut parts = [0.0; ROW_LENGTH];
             for (i, part) in parts.iter_mut().enumerate() {
-                *part = row.weights[i] * of.of(wo, row.normal(&facets, wo, i));
+                *part = row.weights[i] * function.value_at(wo, row.normal(&facets, wo, i));
             }
             for part in parts {
                 sum += part;
@@ -228,7 +228,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 ///
 /// Shares are off by at most 1e-4, and by 8e-4 where some facets reflect totally and others do not, compared with half
 /// a million facets at 13 cosines and 6 roughnesses.
-fn places(ratio: f64) -> u32 {
+fn facet_count(ratio: f64) -> u32 {
     if ratio < 1.0 { 4096 } else { 2048 }
 }
 

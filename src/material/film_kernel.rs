@@ -3,7 +3,7 @@
 use std::array;
 
 use super::albedo_table::{AlbedoTable, step_at};
-use super::film_averages::{HATS, HatWeights, hats};
+use super::film_averages::{HATS, HatWeights, nearby_hats};
 
 /// For each hat, two shares of the light that arrives from a cosine and meets facets at the cosine of the hat,
 /// tabulated over the former.
@@ -29,7 +29,7 @@ impl FilmKernel {
         let row = |step: usize| {
             let mut row = [[0.0; 2]; HATS];
             facets(grid.cosine(step as f64 / steps as f64), &mut |cos, weight, shares| {
-                for (number, part) in hats(cos, ratio) {
+                for (number, part) in nearby_hats(cos, ratio) {
                     (0..2).for_each(|way| row[number][way] += weight * part * shares[way]);
                 }
             });

@@ -11,9 +11,9 @@ use super::stack::Layer;
 const TERMS: usize = 8;
 /// Number of parts per fringe. For layers on glass every part is precise enough, for the oxides of metals more than
 /// half.
-const PARTS: f64 = 8.0;
+const PARTS_PER_FRINGE: f64 = 8.0;
 /// Maximum number of parts of a table, 64 fringes: 1.4 MB.
-const MOST_PARTS: usize = 512;
+const MAX_PARTS: usize = 512;
 /// Maximum difference between the table and the film at the two ends of a part, where polynomials are worst. Parts that
 /// differ by more are left out.
 const TOLERANCE: f64 = 1e-5;
@@ -32,10 +32,10 @@ pub(super) struct FilmTable {
 type Polynomials = Box<[FilmAverages; TERMS]>;
 
 impl FilmTable {
-    /// Makes the table of a layer up to the thickness `thickest` in nm, for light of wavelength `nm`.
-    pub(super) fn new(layer: &Layer, nm: f64, thickest: f64) -> Self {
-        let width = 0.5 * nm / (PARTS * layer.index.norm_squared().sqrt());
-        let parts = ((thickest / width) as usize + 1).min(MOST_PARTS);
+    /// Makes the table of a layer up to the thickness `max_thickness` in nm, for light of wavelength `nm`.
+    pub(super) fn new(layer: &Layer, nm: f64, max_thickness: f64) -> Self {
+        let width = 0.5 * nm / (PARTS_PER_FRINGE * layer.index.norm_squared().sqrt());
+        let parts = ((max_thickness / width) as usize + 1).min(MAX_PARTS);
         Self { width, parts: (0..parts).map(|_| OnceLock::new()).collect() }
     }
 
@@ -45,7 +45,7 @@ impl FilmTable {
         let place = thickness / self.width;
         let number = place as usize;
         let part = self.parts.get(number)?.get_or_init(|| self.part(number, &make)).as_ref()?;
-        Some(at(part, 2.0 * (place - number as f64) - 1.0))
+        Some(evaluate(part, 2.0 * (place - number as f64) - 1.0))
     }
 
     fn part(&self, number: usize, make: impl Fn(f64) -> FilmAverages) -> Option<Polynomials> {
@@ -57,12 +57,12 @@ impl FilmTable {
             FilmAverages::sum(&films, &array::from_fn(|place| scale * libm::cos(degree as f64 * angle(place))))
         };
         let part = Box::new(array::from_fn(term));
-        [-1.0, 1.0].into_iter().all(|x| at(&part, x).differs_by(&film(x)) <= TOLERANCE).then_some(part)
+        [-1.0, 1.0].into_iter().all(|x| evaluate(&part, x).max_difference(&film(x)) <= TOLERANCE).then_some(part)
     }
 }
 
 /// Returns the sum of the polynomials at a place from -1 to 1.
-fn at(part: &Polynomials, x: f64) -> FilmAverages {
+fn evaluate(part: &Polynomials, x: f64) -> FilmAverages {
     let mut terms = [1.0; TERMS];
     terms[1] = x;
     (2..TERMS).for_each(|degree| terms[degree] = 2.0 * x * terms[degree - 1] - terms[degree - 2]);
@@ -84,33 +84,33 @@ mod tests {
             let crosses = Interface::new(1.0, n2, cos).transmittance;
             [1.0 - crosses, crosses]
         };
-        (layer, FilmAverages::new(stack.is_slow(), [1.0, n2], n2, shares, bare))
+        (layer, FilmAverages::new(stack.varies_slowly(), [1.0, n2], n2, shares, bare))
     }
 
     #[test]
-    fn films_read_are_those_made() {
-        for (of, n2) in
+    fn films_read_from_the_table_match_computed_ones() {
+        for (nk, n2) in
             [([1.38, 0.0], 1.5), ([2.4, 0.0], 1.5), ([2.4, 0.05], 1.5), ([0.3, 2.9], 1.5), ([1.33, 0.0], 1.7)]
         {
-            let (layer, _) = film(of, n2, 0.0);
+            let (layer, _) = film(nk, n2, 0.0);
             let table = FilmTable::new(&layer, 550.0, 900.0);
-            let made = |thickness: f64| film(of, n2, thickness).1;
+            let computed = |thickness: f64| film(nk, n2, thickness).1;
             let mut worst = 0.0_f64;
             for step in 0..=900 {
                 let thickness = f64::from(step) * 0.999;
-                let read = table.read(thickness, made).unwrap_or_else(|| panic!("{of:?} at {thickness} nm"));
-                worst = worst.max(read.differs_by(&made(thickness)));
+                let read = table.read(thickness, computed).unwrap_or_else(|| panic!("{nk:?} at {thickness} nm"));
+                worst = worst.max(read.max_difference(&computed(thickness)));
             }
-            assert!(worst < 2.0 * TOLERANCE, "{of:?}: {worst}");
+            assert!(worst < 2.0 * TOLERANCE, "{nk:?}: {worst}");
         }
     }
 
     /// The layer between the two halves of a mirror passes narrow lines.
     #[test]
-    fn what_eight_terms_do_not_follow_is_left_out() {
+    fn what_eight_terms_cannot_follow_is_left_out() {
         let (layer, _) = film([1.5, 0.0], 1.5, 0.0);
         let table = FilmTable::new(&layer, 550.0, 900.0);
-        let line = |thickness: f64| FilmAverages::of_mean([1.0 / (1.0 + (thickness - 300.0).powi(2)), 0.0]);
+        let line = |thickness: f64| FilmAverages::from_mean([1.0 / (1.0 + (thickness - 300.0).powi(2)), 0.0]);
         assert!(table.read(300.0, line).is_none());
         assert!(table.read(1e6, line).is_none());
     }

@@ -29,7 +29,7 @@ impl Interface {
     pub fn new(n1: f64, n2: f64, c1: f64) -> Self {
         let c1 = c1.clamp(0.0, 1.0);
         let eta = n1 / n2;
-        let whole = |[reflectance, transmittance, cos_beyond]: [f64; 3]| Self {
+        let unpolarized = |[reflectance, transmittance, cos_beyond]: [f64; 3]| Self {
             reflectance,
             transmittance,
             cos_beyond,
@@ -38,11 +38,11 @@ impl Interface {
             eta,
         };
         if n1 == n2 {
-            return whole([0.0, 1.0, c1]);
+            return unpolarized([0.0, 1.0, c1]);
         }
         let c2_squared = (n2 - n1) * (n2 + n1) / (n2 * n2) + (eta * c1) * (eta * c1);
         if c2_squared <= 0.0 {
-            return whole([1.0, 0.0, 0.0]);
+            return unpolarized([1.0, 0.0, 0.0]);
         }
         let c2 = c2_squared.sqrt().min(1.0);
         let (s, p) = (n1 * c1 + n2 * c2, n2 * c1 + n1 * c2);
@@ -93,44 +93,44 @@ pub fn reflect(wo: DVec3, normal: DVec3) -> DVec3 {
 pub(super) struct SharedRay {
     /// The ray's index on its own side, and the smaller index of the two sides.
     index: f64,
-    least: f64,
+    min_index: f64,
     /// (n cos)^2 of the ray on its own side, and in the rarer medium, where it is not positive under total reflection.
-    along: f64,
-    beyond: f64,
+    q_squared: f64,
+    rarer_q_squared: f64,
 }
 
 impl SharedRay {
     /// Makes a ray that is refracted by the indices `direction` and meets the boundary at an angle with cosine `cos`.
     pub(super) fn new([d1, d2]: [f64; 2], cos: f64) -> Self {
-        let (c, least) = (cos.clamp(0.0, 1.0), d1.min(d2));
-        let along = (d1 * c) * (d1 * c);
-        Self { index: d1, least, along, beyond: (least - d1) * (least + d1) + along }
+        let (c, min_index) = (cos.clamp(0.0, 1.0), d1.min(d2));
+        let q_squared = (d1 * c) * (d1 * c);
+        Self { index: d1, min_index, q_squared, rarer_q_squared: (min_index - d1) * (min_index + d1) + q_squared }
     }
 
     /// Returns (n cos)^2 of a lane on both sides, if the ray is not reflected totally.
     #[inline]
     fn crossing(&self, [n1, n2]: [f64; 2]) -> [f64; 2] {
-        let trapped = (self.least - 1.0) * (self.least + 1.0);
-        if self.beyond >= trapped {
-            let here = (n1 - self.index) * (n1 + self.index) + self.along;
+        let trapped = (self.min_index - 1.0) * (self.min_index + 1.0);
+        if self.rarer_q_squared >= trapped {
+            let here = (n1 - self.index) * (n1 + self.index) + self.q_squared;
             return [here, here + (n2 - n1) * (n2 + n1)];
         }
-        let least = n1.min(n2);
-        let there = self.beyond * ((least - 1.0) * (least + 1.0) / trapped);
-        [n1, n2].map(|n| (n - least) * (n + least) + there)
+        let min_index = n1.min(n2);
+        let there = self.rarer_q_squared * ((min_index - 1.0) * (min_index + 1.0) / trapped);
+        [n1, n2].map(|n| (n - min_index) * (n + min_index) + there)
     }
 
     /// Returns n cos of a lane with indices `own` on the ray's side; 0 where the lane has no direction of its own.
     pub(super) fn normal_component(&self, own: [f64; 2]) -> f64 {
-        if self.beyond > 0.0 {
+        if self.rarer_q_squared > 0.0 {
             return self.crossing(own)[0].max(0.0).sqrt();
         }
-        let total = (self.index - self.least) * (self.index + self.least);
+        let total = (self.index - self.min_index) * (self.index + self.min_index);
         if total == 0.0 {
             return 0.0;
         }
-        let ([n1, _], least) = (own, own[0].min(own[1]));
-        (self.along * ((n1 - least) * (n1 + least) / total)).sqrt()
+        let ([n1, _], min_index) = (own, own[0].min(own[1]));
+        (self.q_squared * ((n1 - min_index) * (n1 + min_index) / total)).sqrt()
     }
 }
 
@@ -145,7 +145,7 @@ impl SharedRay {
 pub fn shared_transmittance<const N: usize>(own: [&[f64; N]; 2], direction: [f64; 2], cos: f64) -> [f64; N] {
     let ray = SharedRay::new(direction, cos);
     let mut crossing = [0.0; N];
-    if ray.beyond <= 0.0 {
+    if ray.rarer_q_squared <= 0.0 {
         return crossing;
     }
     for (lane, crosses) in crossing.iter_mut().enumerate() {
@@ -153,9 +153,9 @@ pub fn shared_transmittance<const N: usize>(own: [&[f64; N]; 2], direction: [f64
         let [q1_squared, q2_squared] = ray.crossing([n1, n2]);
         let (q1, q2) = (q1_squared.sqrt(), q2_squared.sqrt());
         let (product, both) = (q1 * q2, n1 * n2);
-        let (sum, turned) = (q1 + q2, n1 * n1 - q1_squared + product);
-        let amplitude = sum * turned;
-        let t = 2.0 * product * (turned * turned + both * both) / (amplitude * amplitude);
+        let (sum, k2_plus_p) = (q1 + q2, n1 * n1 - q1_squared + product);
+        let amplitude = sum * k2_plus_p;
+        let t = 2.0 * product * (k2_plus_p * k2_plus_p + both * both) / (amplitude * amplitude);
         *crosses = if (q1_squared > 0.0) & (q2_squared > 0.0) { t } else { 0.0 };
     }
     crossing
@@ -170,15 +170,15 @@ pub fn diffuse_transmittance(m: f64) -> f64 {
     if m < 1.0 {
         return m * m * diffuse_transmittance(1.0 / m);
     }
-    let over = m - 1.0;
-    if over < 1e-3 {
-        return 1.0 - over / 3.0 + 3.0 * over * over;
+    let excess = m - 1.0;
+    if excess < 1e-3 {
+        return 1.0 - excess / 3.0 + 3.0 * excess * excess;
     }
     let (m2, m4) = (m * m, m * m * m * m);
     let (sum, difference) = (m2 + 1.0, m4 - 1.0);
     let reflected = 0.5
-        + over * (3.0 * m + 1.0) / (6.0 * (m + 1.0) * (m + 1.0))
-        + m2 * (m2 - 1.0) * (m2 - 1.0) / (sum * sum * sum) * libm::log(over / (m + 1.0))
+        + excess * (3.0 * m + 1.0) / (6.0 * (m + 1.0) * (m + 1.0))
+        + m2 * (m2 - 1.0) * (m2 - 1.0) / (sum * sum * sum) * libm::log(excess / (m + 1.0))
         - 2.0 * m2 * m * (m2 + 2.0 * m - 1.0) / (sum * difference)
         + 8.0 * m4 * (m4 + 1.0) / (sum * difference * difference) * libm::log(m);
     1.0 - reflected

@@ -240,17 +240,17 @@ impl Material<Table> {
         &self,
         context: &ScatterContext<N>,
         share: Lanes<N>,
-        met: &mut Vec<Lanes<N>>,
+        shares: &mut Vec<Lanes<N>>,
     ) {
         match self {
-            Self::Diffuse(diffuse) => met.extend(diffuse.fluorescence.as_ref().map(|_| share)),
+            Self::Diffuse(diffuse) => shares.extend(diffuse.fluorescence.as_ref().map(|_| share)),
             Self::Mix(mix) => {
                 let parts = mix.parts(context);
-                parts.into_iter().for_each(|(part, of_part)| part.shares_of_dyes(context, share * of_part, met));
+                parts.into_iter().for_each(|(part, of_part)| part.shares_of_dyes(context, share * of_part, shares));
             }
             Self::Mask(mask) => {
                 let opacity = context.read(&mask.opacity);
-                mask.material.material().shares_of_dyes(context, share * opacity, met);
+                mask.material.material().shares_of_dyes(context, share * opacity, shares);
             }
             Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Thin(_) => {}
             Self::Emissive(_) | Self::Plastic(_) | Self::Polarizer(_) | Self::Retarder(_) => {}
@@ -259,7 +259,7 @@ impl Material<Table> {
 
     /// Returns whether none of its lobes is requested.
     #[inline(always)]
-    fn is_left_out<const N: usize>(&self, context: &ScatterContext<N>) -> bool {
+    fn is_not_requested<const N: usize>(&self, context: &ScatterContext<N>) -> bool {
         context.lobes != Lobes::ALL && !self.lobes().intersects(context.lobes)
     }
 
@@ -281,7 +281,7 @@ impl Scatter for Material<Table> {
 
     fn scatter<const N: usize>(&self, context: &ScatterContext<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         match self {
-            _ if self.is_left_out(context) => {}
+            _ if self.is_not_requested(context) => {}
             Self::Diffuse(diffuse) => branches.push(diffuse.scatter(context, u)),
             Self::Mirror(mirror) => branches.push(mirror.scatter(context)),
             Self::Thin(thin) => thin.scatter(context, branches),
@@ -296,7 +296,7 @@ impl Scatter for Material<Table> {
 
     fn evaluate<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
         match self {
-            _ if self.is_left_out(context) => None,
+            _ if self.is_not_requested(context) => None,
             Self::Diffuse(diffuse) => diffuse.evaluate(context, wi),
             Self::Conductor(conductor) => conductor.evaluate(context, wi),
             Self::Dielectric(dielectric) => dielectric.evaluate(context, wi),
@@ -347,7 +347,7 @@ impl Scatter for Material<Table> {
 
     fn mueller<const N: usize>(&self, context: &ScatterContext<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
         match self {
-            _ if self.is_left_out(context) => *mueller = Mueller::NONE,
+            _ if self.is_not_requested(context) => *mueller = Mueller::NONE,
             Self::Mirror(mirror) if incoming.single => mirror.mueller(context, mueller),
             Self::Thin(thin) if incoming.single => thin.mueller(context, false, incoming.lanes, mueller),
             Self::Conductor(conductor) => conductor.mueller(context, incoming, mueller),
@@ -362,7 +362,7 @@ impl Scatter for Material<Table> {
 
     fn mueller_of_straight<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>) {
         match self {
-            Self::Thin(thin) => thin.mueller(context, true, context.present.not_zero(), mueller),
+            Self::Thin(thin) => thin.mueller(context, true, context.present.nonzero(), mueller),
             Self::Polarizer(polarizer) => polarizer.mueller(context, mueller),
             Self::Retarder(retarder) => retarder.mueller(context, mueller),
             Self::Mix(mix) => mix.mueller_of_straight(context, mueller),

@@ -5,9 +5,9 @@ use crate::spectrum::{Draw, MAX_LANES};
 /// A value that a material computes once for each lane that stands for the same light in every sample. It depends on a
 /// key, such as indices, that is mostly the same wherever the material is hit.
 #[derive(Clone, Debug)]
-pub(super) struct LaneCache<K, V>(Arc<OnceLock<OfLanes<K, V>>>);
+pub(super) struct LaneCache<K, V>(Arc<OnceLock<LaneEntries<K, V>>>);
 
-type OfLanes<K, V> = Box<[OnceLock<(K, V)>; MAX_LANES]>;
+type LaneEntries<K, V> = Box<[OnceLock<(K, V)>; MAX_LANES]>;
 
 impl<K: Copy + PartialEq, V> LaneCache<K, V> {
     /// Makes an empty cache.
@@ -28,7 +28,7 @@ impl<K: Copy + PartialEq, V> LaneCache<K, V> {
             return None;
         }
         let lanes = self.0.get_or_init(|| Box::new([const { OnceLock::new() }; MAX_LANES]));
-        let (known, value) = lanes[lane].get_or_init(|| (key, make()));
-        (*known == key).then_some(value)
+        let (first_key, value) = lanes[lane].get_or_init(|| (key, make()));
+        (*first_key == key).then_some(value)
     }
 }

@@ -70,8 +70,8 @@ impl Lobes {
     /// Returns whether narrow lobes are treated apart from all others that send light in every direction: if there are
     /// no others, or if narrow reflection stands beside diffuse reflection alone.
     pub const fn has_narrow_apart(self) -> bool {
-        let beside = self.intersection(Self::NON_DELTA).without(Self::NARROW_REFLECTION).0;
-        self.is_narrow() || (self.intersects(Self::NARROW_REFLECTION) && beside == Self::DIFFUSE_REFLECTION.0)
+        let others = self.intersection(Self::NON_DELTA).without(Self::NARROW_REFLECTION).0;
+        self.is_narrow() || (self.intersects(Self::NARROW_REFLECTION) && others == Self::DIFFUSE_REFLECTION.0)
     }
 
     /// Returns whether only narrow lobes send light in every direction.

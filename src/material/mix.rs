@@ -63,11 +63,11 @@ impl<M: Scatter> Mix<Table, M> {
             while at < branches.len() {
                 let branch = branches[at].scaled(share);
                 let (before, rest) = branches.split_at_mut(start);
-                let same_way = before[first..].iter_mut().find(|other| other.is_same_way(&branch));
-                let kept = match (branch.pdf, same_way) {
+                let same_direction = before[first..].iter_mut().find(|other| other.has_same_direction(&branch));
+                let kept_branch = match (branch.pdf, same_direction) {
                     (Some(pdf), _) if number == chosen => {
                         let chances = [1.0 - second, second];
-                        Some(self.beside_other(context, branch, pdf, number, shares, chances))
+                        Some(self.drawn_from_both(context, branch, pdf, number, shares, chances))
                     }
                     (Some(_), _) => None,
                     (None, Some(other)) => {
@@ -76,7 +76,7 @@ impl<M: Scatter> Mix<Table, M> {
                     }
                     (None, None) => Some(branch),
                 };
-                match kept {
+                match kept_branch {
                     Some(branch) => (rest[at - start], at) = (branch, at + 1),
                     None => _ = branches.remove(at),
                 }
@@ -86,7 +86,7 @@ impl<M: Scatter> Mix<Table, M> {
 
     /// Turns a branch that was drawn from one material into one drawn from both, including what the other scatters
     /// there.
-    fn beside_other<const N: usize>(
+    fn drawn_from_both<const N: usize>(
         &self,
         context: &ScatterContext<N>,
         drawn: Branch<N>,
@@ -104,9 +104,9 @@ impl<M: Scatter> Mix<Table, M> {
                 ..drawn
             };
         };
-        let both = chances[number] * pdf + chances[other] * other_pdf;
-        let share = drawn.share * (pdf / both) as f32 + light * shares[other] * (1.0 / both) as f32;
-        Branch { share, pdf: Some(both), ..drawn }
+        let mixture_pdf = chances[number] * pdf + chances[other] * other_pdf;
+        let share = drawn.share * (pdf / mixture_pdf) as f32 + light * shares[other] * (1.0 / mixture_pdf) as f32;
+        Branch { share, pdf: Some(mixture_pdf), ..drawn }
     }
 
     pub(super) fn evaluate<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
@@ -130,22 +130,22 @@ impl<M: Scatter> Mix<Table, M> {
         incoming: Incoming,
         mueller: &mut Mueller<N>,
     ) {
-        self.both_muellers(context, mueller, |part, mueller| part.mueller(context, incoming, mueller));
+        self.mix_muellers(context, mueller, |part, mueller| part.mueller(context, incoming, mueller));
     }
 
     pub(super) fn mueller_of_straight<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>) {
-        self.both_muellers(context, mueller, |part, mueller| part.mueller_of_straight(context, mueller));
+        self.mix_muellers(context, mueller, |part, mueller| part.mueller_of_straight(context, mueller));
     }
 
-    fn both_muellers<const N: usize>(
+    fn mix_muellers<const N: usize>(
         &self,
         context: &ScatterContext<N>,
         mueller: &mut Mueller<N>,
-        of: impl Fn(&M, &mut Mueller<N>),
+        set_mueller: impl Fn(&M, &mut Mueller<N>),
     ) {
         let ([(a, first), (b, second)], mut other) = (self.parts(context), Mueller::NONE);
-        of(a, mueller);
-        of(b, &mut other);
+        set_mueller(a, mueller);
+        set_mueller(b, &mut other);
         mueller.scale(first);
         other.scale(second);
         mueller.add(&other);
@@ -154,7 +154,7 @@ impl<M: Scatter> Mix<Table, M> {
     /// Returns the share that passes straight through.
     pub(super) fn straight<const N: usize>(&self, context: &ScatterContext<N>) -> Option<Straight<N>> {
         let parts = self.materials.each_ref().map(|part| part.material().straight(context));
-        Straight::of_both(parts, self.shares(context))
+        Straight::combine(parts, self.shares(context))
     }
 
     pub(super) fn degree_of_scattered<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> f32 {

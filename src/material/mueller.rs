@@ -86,15 +86,15 @@ impl Block<f64> {
         let u = (0.5 * (modulus + t0)).max(0.0).sqrt();
         let b = (0.5 * (modulus - t0)).max(0.0).sqrt();
         let squared = |u: f64, v: f64| u * u + v * v;
-        let over = modulus + c2 + 2.0 * u * cos;
-        let s = if over == 0.0 { 1.0 } else { (modulus + c2 - 2.0 * u * cos) / over };
+        let s_denominator = modulus + c2 + 2.0 * u * cos;
+        let s = if s_denominator == 0.0 { 1.0 } else { (modulus + c2 - 2.0 * u * cos) / s_denominator };
         let (uc, bc) = (u * cos, b * cos);
-        let below = squared(uc + s2, bc);
-        if below == 0.0 {
+        let p_denominator = squared(uc + s2, bc);
+        if p_denominator == 0.0 {
             return Self { a: 1.0, d: 0.0, c: 1.0, q: 0.0 };
         }
-        let p = s * squared(uc - s2, bc) / below;
-        let [c, q] = [s2 * s2 - squared(uc, bc), 2.0 * s2 * bc].map(|part| s * part / below);
+        let p = s * squared(uc - s2, bc) / p_denominator;
+        let [c, q] = [s2 * s2 - squared(uc, bc), 2.0 * s2 * bc].map(|part| s * part / p_denominator);
         Self { a: 0.5 * (s + p), d: 0.5 * (s - p), c, q }
     }
 
@@ -232,13 +232,13 @@ impl<const N: usize> Mueller<N> {
 
     /// Sets the matrix of a boundary, with a block for each of some lanes. If `lanes` is a single one, the blocks of
     /// the others have no meaning.
-    pub fn set_lanes(&mut self, axis: DVec3, lanes: LaneSet, mut of_lane: impl FnMut(usize) -> Block<f64>) {
+    pub fn set_lanes(&mut self, axis: DVec3, lanes: LaneSet, mut block_of: impl FnMut(usize) -> Block<f64>) {
         (self.axis, self.base) = (axis, None);
-        if lanes.only().is_none() {
+        if lanes.single_lane().is_none() {
             self.block = Block::NONE;
         }
         for lane in lanes.iter() {
-            self.block.set(lane, of_lane(lane));
+            self.block.set(lane, block_of(lane));
         }
     }
 
@@ -286,7 +286,7 @@ impl<const N: usize> Mueller<N> {
 mod tests {
     use super::Block;
 
-    fn near(got: f64, expected: f64) {
+    fn assert_near(got: f64, expected: f64) {
         assert!((got - expected).abs() < 6e-7, "{got} for {expected}");
     }
 
@@ -302,11 +302,13 @@ mod tests {
             [75.0, 0.253061, 0.578105, 0.815963, 0.746939, -0.195860, 0.980632],
         ] {
             let cos = f64::to_radians(angle).cos();
-            let (back, on) = (Block::reflected(1.0, 1.5, cos), Block::refracted(1.0, 1.5, cos));
+            let (back, through) = (Block::reflected(1.0, 1.5, cos), Block::refracted(1.0, 1.5, cos));
             [(back.a, r), (back.d / back.a, d_r), (back.c / back.a, c_r), (back.q, 0.0)]
                 .into_iter()
-                .for_each(|(x, y)| near(x, y));
-            [(on.a, t), (on.d / on.a, d_t), (on.c / on.a, c_t), (on.q, 0.0)].into_iter().for_each(|(x, y)| near(x, y));
+                .for_each(|(x, y)| assert_near(x, y));
+            [(through.a, t), (through.d / through.a, d_t), (through.c / through.a, c_t), (through.q, 0.0)]
+                .into_iter()
+                .for_each(|(x, y)| assert_near(x, y));
         }
     }
 
@@ -314,12 +316,12 @@ mod tests {
     fn total_reflection_has_its_phase() {
         for [angle, c, q] in [[45.0, 0.8, 0.6], [60.0, 0.760870, 0.648905], [75.0, 0.927532, 0.373743]] {
             let all = Block::reflected(1.5, 1.0, f64::to_radians(angle).cos());
-            [(all.a, 1.0), (all.d, 0.0), (all.c, c), (all.q, q)].into_iter().for_each(|(x, y)| near(x, y));
+            [(all.a, 1.0), (all.d, 0.0), (all.c, c), (all.q, q)].into_iter().for_each(|(x, y)| assert_near(x, y));
         }
     }
 
     #[test]
-    fn metals_have_theirs() {
+    fn metals_have_their_reflectances_and_phase() {
         // (n, k, angle, R_s, R_p, arg r_p / r_s in degrees).
         for [n, k, angle, s, p, argument] in [
             [0.43, 2.455, 45.0, 0.849414, 0.721504, 149.731837],
@@ -330,9 +332,9 @@ mod tests {
             [1.015, 6.627, 75.0, 0.977597, 0.763276, 124.230155],
         ] {
             let metal = Block::of_metal(1.0, n, k, f64::to_radians(angle).cos());
-            [(metal.a + metal.d, s), (metal.a - metal.d, p)].into_iter().for_each(|(x, y)| near(x, y));
-            near(metal.q.atan2(metal.c).to_degrees() / 1000.0, argument / 1000.0);
-            near(metal.c.hypot(metal.q), (s * p).sqrt());
+            [(metal.a + metal.d, s), (metal.a - metal.d, p)].into_iter().for_each(|(x, y)| assert_near(x, y));
+            assert_near(metal.q.atan2(metal.c).to_degrees() / 1000.0, argument / 1000.0);
+            assert_near(metal.c.hypot(metal.q), (s * p).sqrt());
         }
         let along = Block::of_metal(1.0, 0.43, 2.455, 1.0);
         assert!(along.d.abs() < 1e-15 && (along.c + along.a).abs() < 1e-15, "{along:?}");
@@ -341,10 +343,12 @@ mod tests {
     #[test]
     fn a_pane_sums_all_reflections() {
         let cos = f64::to_radians(60.0).cos();
-        let [on, back] = Block::of_pane(Block::reflected(1.0, 1.52, cos), Block::refracted(1.0, 1.52, cos), 0.9);
+        let [through, back] = Block::of_pane(Block::reflected(1.0, 1.52, cos), Block::refracted(1.0, 1.52, cos), 0.9);
         [(back.a, 0.144024), (back.d / back.a, 0.980834), (back.c / back.a, 0.192978)]
             .into_iter()
-            .for_each(|(x, y)| near(x, y));
-        [(on.a, 0.757083), (on.d / on.a, -0.185148), (on.c / on.a, 0.969445)].into_iter().for_each(|(x, y)| near(x, y));
+            .for_each(|(x, y)| assert_near(x, y));
+        [(through.a, 0.757083), (through.d / through.a, -0.185148), (through.c / through.a, 0.969445)]
+            .into_iter()
+            .for_each(|(x, y)| assert_near(x, y));
     }
 }

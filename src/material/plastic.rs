@@ -1,15 +1,15 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::coat::{Coat, CoatTransmittance};
-use super::degree::{LANES, largest, of_all_lanes};
-use super::last::Last;
+use super::degree::{MAX_EVALUATED_LANES, combined_degree, max_degree};
+use super::last::LastResult;
 use super::plastic_film::PlasticFilm;
-use super::roughness::above;
+use super::roughness::to_local_above;
 use super::{
     Base, Block, Branch, Coating, Incoming, Interface, Lobes, Mueller, RoughReflection, RoughSurface, ScatterContext,
     StackShares,
 };
-use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
+use crate::math::{DVec3, Frame, sample_cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
 
 /// A matte body under a clear coat, smooth or rough: plastic, glazed earthenware, varnish.
@@ -58,22 +58,22 @@ impl Plastic<Table> {
             if !context.lobes.intersects(Lobes::DIFFUSE_REFLECTION) {
                 return;
             }
-            let wi = cosine_hemisphere(u);
+            let wi = sample_cosine_hemisphere(u);
             let base = self.lanes(context, [context.wo.dot(context.normal), wi.z], |lane| lane.base());
-            branches.push(branch(context, wi, base, wi.z * FRAC_1_PI));
+            branches.push(make_branch(context, wi, base, wi.z * FRAC_1_PI));
             return;
         };
-        let wo = above(&Frame::about(context.normal), context.wo);
+        let wo = to_local_above(&Frame::about(context.normal), context.wo);
         let chance = self.chance_of_coat(context, &self.lanes(context, [wo.z; 2], |lane| lane.reflected()));
         let wi = if u[0] < chance {
             surface.scatter(wo, [u[0] / chance, u[1]]).map(|reflection| reflection.wi)
         } else {
-            Some(cosine_hemisphere([(u[0] - chance) / (1.0 - chance), u[1]]))
+            Some(sample_cosine_hemisphere([(u[0] - chance) / (1.0 - chance), u[1]]))
         };
         if let Some(wi) = wi
-            && let Some((light, pdf)) = self.rough(context, surface, [wo, wi])
+            && let Some((light, pdf)) = self.evaluate_rough(context, surface, [wo, wi])
         {
-            branches.push(branch(context, wi, light.map(|x| x / pdf), pdf));
+            branches.push(make_branch(context, wi, light.map(|x| x / pdf), pdf));
         }
     }
 
@@ -89,7 +89,7 @@ impl Plastic<Table> {
             }
             Some(surface) => {
                 let frame = Frame::about(context.normal);
-                self.rough(context, surface, [above(&frame, context.wo), frame.to_local(wi)])?
+                self.evaluate_rough(context, surface, [to_local_above(&frame, context.wo), frame.to_local(wi)])?
             }
         };
         Some((Lanes::from_fn(|i| light[i] as f32), pdf))
@@ -101,7 +101,7 @@ impl Plastic<Table> {
         if cos <= 0.0 {
             return Lanes::ZERO;
         }
-        let wo = above(&Frame::about(context.normal), context.wo);
+        let wo = to_local_above(&Frame::about(context.normal), context.wo);
         let light = self.lanes(context, [wo.z, cos], |lane| lane.base() * cos * FRAC_1_PI);
         Lanes::from_fn(|i| light[i] as f32)
     }
@@ -110,13 +110,13 @@ impl Plastic<Table> {
     fn mirrored<const N: usize>(&self, context: &ScatterContext<N>) -> Option<Branch<N>> {
         let (index, cos) = (context.draw.read_exact(&self.index), context.wo.dot(context.normal));
         let local = self.coating.as_ref().map(|coating| coating.local(context, false));
-        let (mut share, mut degree, mut of_lanes) = (Lanes::ZERO, 0.0_f64, [[0.0; 2]; N]);
+        let (mut share, mut degree, mut lane_shares) = (Lanes::ZERO, 0.0_f64, [[0.0; 2]; N]);
         for lane in (0..N).filter(|&lane| context.present[lane] != 0.0) {
             let [n1, n2] = [context.incident_of(lane), index[lane]];
             if let Some(local) = &local {
-                let reflected = local.at_cosine(lane, n1, n2, cos).reflected;
+                let reflected = local.shares_at_cosine(lane, n1, n2, cos).reflected;
                 share.0[lane] = reflected.mean() as f32;
-                of_lanes[lane] = [reflected.s, reflected.p];
+                lane_shares[lane] = [reflected.s, reflected.p];
             } else {
                 let interface = Interface::new(n1, n2, cos);
                 share.0[lane] = interface.reflectance as f32;
@@ -124,14 +124,14 @@ impl Plastic<Table> {
             }
         }
         if local.is_some() {
-            degree = of_all_lanes(of_lanes.into_iter());
+            degree = combined_degree(lane_shares.into_iter());
         }
         (!share.is_zero()).then(|| Branch::mirrored(context, share, degree as f32))
     }
 
     /// Returns BRDF times cosine of a rough coat and its base, and the density with which `scatter` draws the light's
     /// direction.
-    fn rough<const N: usize>(
+    fn evaluate_rough<const N: usize>(
         &self,
         context: &ScatterContext<N>,
         surface: &RoughSurface,
@@ -139,14 +139,14 @@ impl Plastic<Table> {
     ) -> Option<([f64; N], f64)> {
         let reflection = surface.evaluate(wo, wi)?;
         let base_pdf = wi.z * FRAC_1_PI;
-        let [of_coat, of_base] = self.asked(context).map(f64::from);
-        let mut last = Last::NONE;
+        let [coat_weight, base_weight] = self.requested_parts(context).map(f64::from);
+        let mut last = LastResult::NONE;
         let lanes = self.lanes(context, [wo.z, wi.z], |lane| {
             let coat = match lane.film {
                 Some(_) => lane.coat(&reflection),
-                None => last.of(lane.indices, |_| lane.coat(&reflection)),
+                None => last.get_or_make(lane.indices, |_| lane.coat(&reflection)),
             };
-            (of_coat * coat + of_base * lane.base() * base_pdf, lane.reflected())
+            (coat_weight * coat + base_weight * lane.base() * base_pdf, lane.reflected())
         });
         let chance = self.chance_of_coat(context, &lanes.map(|lane| lane.1));
         let pdf = chance * reflection.pdf + (1.0 - chance) * base_pdf;
@@ -154,15 +154,16 @@ impl Plastic<Table> {
     }
 
     /// Returns whether a rough coat is requested, and whether the base is.
-    fn asked<const N: usize>(&self, context: &ScatterContext<N>) -> [bool; 2] {
+    fn requested_parts<const N: usize>(&self, context: &ScatterContext<N>) -> [bool; 2] {
         [self.coat.roughness().reflection(), Lobes::DIFFUSE_REFLECTION].map(|lobe| context.lobes.intersects(lobe))
     }
 
     /// Returns the probability of drawing a direction from a rough coat rather than from the base, in proportion to
     /// what each reflects of all lanes, if both are requested.
     fn chance_of_coat<const N: usize>(&self, context: &ScatterContext<N>, reflected: &[[f64; 2]; N]) -> f64 {
-        let asked = self.asked(context).map(f64::from);
-        let [coat, base] = [0, 1].map(|part| asked[part] * reflected.iter().map(|lane| lane[part]).sum::<f64>());
+        let requested_parts = self.requested_parts(context).map(f64::from);
+        let [coat, base] =
+            [0, 1].map(|part| requested_parts[part] * reflected.iter().map(|lane| lane[part]).sum::<f64>());
         if coat > 0.0 { coat / (coat + base) } else { 0.0 }
     }
 
@@ -171,21 +172,21 @@ impl Plastic<Table> {
         &self,
         context: &ScatterContext<N>,
         cosines: [f64; 2],
-        mut of_lane: impl FnMut(&CoatLane<N>) -> T,
+        mut evaluate_lane: impl FnMut(&CoatLane<N>) -> T,
     ) -> [T; N] {
         let (index, base) = (context.draw.read_exact(&self.index), context.read(&self.reflectance));
         let local = self.coating.as_ref().map(|coating| coating.local(context, false));
         let missing = local.as_ref().and_then(|_| self.coat.missing_energy(cosines));
-        let mut last = Last::NONE;
+        let mut last = LastResult::NONE;
         std::array::from_fn(|i| {
             if context.present[i] == 0.0 {
                 return T::default();
             }
             let indices = [context.incident_of(i), index[i]];
             let film = local.as_ref().map(|local| PlasticFilm::new(local, i, indices, missing.is_some()));
-            let bare = last.of(indices, |indices| self.coat.transmittance(indices, cosines));
+            let bare = last.get_or_make(indices, |indices| self.coat.transmittance(indices, cosines));
             let transmittance = film.as_ref().map_or(bare, |film| film.transmittance(&bare, missing.as_ref(), cosines));
-            of_lane(&CoatLane { transmittance, r: f64::from(base[i]), indices, film })
+            evaluate_lane(&CoatLane { transmittance, r: f64::from(base[i]), indices, film })
         })
     }
 
@@ -200,7 +201,7 @@ impl Plastic<Table> {
         let index = context.draw.read_exact(&self.index);
         let local = self.coating.as_ref().map(|coating| coating.local(context, false));
         let film = |lane: usize, cos: f64| {
-            local.as_ref().map(|local| local.at_cosine(lane, context.incident_of(lane), index[lane], cos))
+            local.as_ref().map(|local| local.shares_at_cosine(lane, context.incident_of(lane), index[lane], cos))
         };
         let reflected = |lane: usize, cos: f64| match (film(lane, cos), [context.incident_of(lane), index[lane]]) {
             (Some(shares), _) => shares.reflected.block(),
@@ -221,7 +222,7 @@ impl Plastic<Table> {
         }
         match self.coat.roughness().surface() {
             None => *mueller = Mueller::NONE,
-            Some(_) if !self.asked(context)[0] => *mueller = Mueller::NONE,
+            Some(_) if !self.requested_parts(context)[0] => *mueller = Mueller::NONE,
             Some(surface) => {
                 let Some(reflection) = surface.evaluate_at(context, incoming.wi) else {
                     return *mueller = Mueller::NONE;
@@ -231,10 +232,10 @@ impl Plastic<Table> {
                 mueller.set_lanes(axis, incoming.lanes, facet);
             }
         }
-        if !self.asked(context)[1] {
+        if !self.requested_parts(context)[1] {
             return;
         }
-        let from = above(&Frame::about(context.normal), context.wo).z;
+        let from = to_local_above(&Frame::about(context.normal), context.wo).z;
         mueller.base = Some(Box::new(self.polarized_base(context, [from, to], film)));
     }
 
@@ -250,8 +251,8 @@ impl Plastic<Table> {
         let crossings = self.lanes(context, [from, to], |lane| {
             (lane.base() * to * FRAC_1_PI, [lane.transmittance.from, lane.transmittance.to])
         });
-        let mut last = Last::NONE;
-        let mut crossed = |lane: usize, cos: f64, share: f64| {
+        let mut last = LastResult::NONE;
+        let mut crossing_degree = |lane: usize, cos: f64, share: f64| {
             if context.present[lane] == 0.0 {
                 return 0.0;
             }
@@ -259,10 +260,11 @@ impl Plastic<Table> {
                 return shares.refracted.block().degree();
             }
             let local = ([context.incident_of(lane), index[lane]], cos);
-            last.of(local, |(indices, cos)| self.coat.degree_crossing(indices, cos, share))
+            last.get_or_make(local, |(indices, cos)| self.coat.transmitted_degree(indices, cos, share))
         };
-        let [leaving, arriving] = [(from, 0), (to, 1)]
-            .map(|(cos, way)| -> [f64; N] { std::array::from_fn(|lane| crossed(lane, cos, crossings[lane].1[way])) });
+        let [leaving, arriving] = [(from, 0), (to, 1)].map(|(cos, way)| -> [f64; N] {
+            std::array::from_fn(|lane| crossing_degree(lane, cos, crossings[lane].1[way]))
+        });
         let base = |lane: usize| crossings[lane].0;
         Base {
             normal: context.normal,
@@ -276,7 +278,8 @@ impl Plastic<Table> {
     /// [`Scatter::degree_of_scattered`](super::Scatter::degree_of_scattered).
     pub(super) fn degree_of_scattered<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> f32 {
         let index = context.draw.read_exact(&self.index);
-        let lanes = || (0..N).filter(|&lane| index[lane] != context.incident_of(lane)).step_by(N.div_ceil(LANES));
+        let lanes =
+            || (0..N).filter(|&lane| index[lane] != context.incident_of(lane)).step_by(N.div_ceil(MAX_EVALUATED_LANES));
         let local = self.coating.as_ref().map(|coating| coating.local(context, false));
         let coat = |lane: usize, cos: f64| {
             let [n1, n2] = [context.incident_of(lane), index[lane]];
@@ -286,21 +289,21 @@ impl Plastic<Table> {
                     [interface.polarization_reflected, interface.polarization_refracted]
                 }
                 Some(local) => {
-                    let shares = local.at_cosine(lane, n1, n2, cos);
+                    let shares = local.shares_at_cosine(lane, n1, n2, cos);
                     [shares.reflected, shares.refracted].map(|share| share.degree())
                 }
             }
             .map(f64::abs)
         };
-        let crossed = |lane: usize| {
+        let crossing_degree = |lane: usize| {
             let cosines = [context.wo, wi].map(|direction| direction.dot(context.normal).abs());
             cosines.map(|cos| coat(lane, cos)[1]).into_iter().fold(0.0, f64::max)
         };
-        let base = largest(lanes().map(crossed));
+        let base = max_degree(lanes().map(crossing_degree));
         match (self.coat.roughness().is_smooth(), (context.wo + wi).try_normalize()) {
             (false, Some(h)) => {
                 let mirrored = |lane: usize| coat(lane, context.wo.dot(h))[0];
-                base.max(largest(lanes().map(mirrored)))
+                base.max(max_degree(lanes().map(mirrored)))
             }
             _ => base,
         }
@@ -341,7 +344,7 @@ impl<const N: usize> CoatLane<'_, N> {
 }
 
 /// Makes the branch of a direction in the surface's frame.
-fn branch<const N: usize>(context: &ScatterContext<N>, wi: DVec3, share: [f64; N], pdf: f64) -> Branch<N> {
+fn make_branch<const N: usize>(context: &ScatterContext<N>, wi: DVec3, share: [f64; N], pdf: f64) -> Branch<N> {
     let wi = unit(Frame::about(context.normal).to_world(wi));
     Branch::drawn(wi, Lanes::from_fn(|i| share[i] as f32), pdf)
 }

@@ -22,7 +22,7 @@ impl<'a, const N: usize> PlasticFilm<'a, N> {
     /// Returns what it reflects and transmits of light from a cosine.
     pub(super) fn shares(&self, cos: f64) -> StackShares {
         let [n1, n2] = self.indices;
-        self.local.at_cosine(self.lane, n1, n2, cos)
+        self.local.shares_at_cosine(self.lane, n1, n2, cos)
     }
 
     /// Returns the transmittance of film and coat together from two directions. `bare` is that of the coat alone,
@@ -34,8 +34,8 @@ impl<'a, const N: usize> PlasticFilm<'a, N> {
         cosines: [f64; 2],
     ) -> CoatTransmittance {
         match missing {
-            Some(missing) => missing.transmittance_under(&self.averages, bare),
-            None => bare.under(&self.averages, cosines.map(|cos| self.shares(cos).refracted.mean())),
+            Some(missing) => missing.transmittance_with_film(&self.averages, bare),
+            None => bare.with_film(&self.averages, cosines.map(|cos| self.shares(cos).refracted.mean())),
         }
     }
 }
@@ -48,18 +48,18 @@ fn averages(stack: &Stack, [n1, n2]: [f64; 2], is_rough: bool) -> FilmAverages {
         [1.0 - crosses, crosses]
     };
     // In a denser medium, layers may reflect totally beyond another angle than the coat does.
-    let is_slow = stack.is_slow() && n1 <= n2;
+    let varies_slowly = stack.varies_slowly() && n1 <= n2;
     let averages = match is_rough {
-        true => FilmAverages::new(is_slow, [n1, n2], n1.max(n2), film, bare),
-        false => FilmAverages::of_mean(mean(is_slow, n2 / n1, film)),
+        true => FilmAverages::new(varies_slowly, [n1, n2], n1.max(n2), film, bare),
+        false => FilmAverages::from_mean(mean(varies_slowly, n2 / n1, film)),
     };
     if stack.layers().iter().all(|layer| layer.index.im == 0.0) {
         return averages;
     }
     let inside = stack.turned_around();
-    let lost = |cos: f64| {
+    let absorbed = |cos: f64| {
         let [reflected, transmittance] = inside.shares(n2, n1.into(), n2 * cos).means();
         [1.0 - reflected - transmittance, 0.0]
     };
-    FilmAverages { lost_inside: mean(stack.is_slow(), n1 / n2, lost)[0].max(0.0), ..averages }
+    FilmAverages { absorbed_inside: mean(stack.varies_slowly(), n1 / n2, absorbed)[0].max(0.0), ..averages }
 }

@@ -29,8 +29,8 @@ impl Polarizer {
     }
 
     pub(super) fn mueller<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>) {
-        match let_through(context, self.axis) {
-            Some(axis) => mueller.set_lanes(axis, context.present.not_zero(), |_| Block::of_polarizer(self.extinction)),
+        match projected_axis(context, self.axis) {
+            Some(axis) => mueller.set_lanes(axis, context.present.nonzero(), |_| Block::of_polarizer(self.extinction)),
             None => *mueller = Mueller::NONE,
         }
     }
@@ -38,7 +38,7 @@ impl Polarizer {
 
 /// Returns the direction perpendicular to the ray and to the sheet's other axis, which is perpendicular to `axis` and
 /// the normal. Returns None if `axis` is along the normal.
-pub(super) fn let_through<const N: usize>(context: &ScatterContext<N>, axis: DVec3) -> Option<DVec3> {
+pub(super) fn projected_axis<const N: usize>(context: &ScatterContext<N>, axis: DVec3) -> Option<DVec3> {
     let other = context.normal.cross(axis.try_normalize()?).try_normalize()?;
     other.cross(context.wo).try_normalize()
 }

@@ -24,8 +24,8 @@ impl<'a, const N: usize> Refractions<'a, N> {
     /// them.
     pub(super) fn branch(&mut self, pair: [f64; 2], interface: impl FnOnce() -> Interface) -> &mut Branch<N> {
         let count = self.branches.len() - self.first;
-        let known = self.pairs[..count].iter().position(|of| !self.parts || *of == pair);
-        let number = known.unwrap_or_else(|| {
+        let existing = self.pairs[..count].iter().position(|other| !self.parts || *other == pair);
+        let number = existing.unwrap_or_else(|| {
             let (ScatterContext { wo, normal, .. }, [here, beyond]) = (self.context, pair);
             let wi = if here == beyond { -*wo } else { interface().refract(*wo, *normal) };
             let (share, eta_scale) = (Lanes::ZERO, (here / beyond) * (here / beyond));

@@ -1,6 +1,6 @@
 use std::f64::consts::TAU;
 
-use super::polarizer::let_through;
+use super::polarizer::projected_axis;
 use super::stack::PHASE_STEP;
 use super::{Block, Mueller, ScatterContext, Straight};
 use crate::math::DVec3;
@@ -51,8 +51,8 @@ impl PathDifference {
         if step <= PHASE_STEP {
             return block;
         }
-        let left = libm::sin(0.5 * step) / (0.5 * step);
-        Block { c: left * block.c, q: left * block.q, ..block }
+        let sinc = libm::sin(0.5 * step) / (0.5 * step);
+        Block { c: sinc * block.c, q: sinc * block.q, ..block }
     }
 
     /// Returns the difference of phase between the two ends of a band, in radians, from its wavelength in nm and
@@ -69,8 +69,8 @@ impl Retarder {
     }
 
     pub(super) fn mueller<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>) {
-        let Some(axis) = let_through(context, self.axis) else { return mueller.set_unchanged(context.present) };
-        let lanes = context.present.not_zero();
+        let Some(axis) = projected_axis(context, self.axis) else { return mueller.set_unchanged(context.present) };
+        let lanes = context.present.nonzero();
         match self.retardance {
             Retardance::Phase(degrees) => {
                 let block = Block::of_retarder(degrees.to_radians());

@@ -18,10 +18,10 @@ pub(super) struct MissingEnergy<'a> {
     to: f64,
     /// Missing energy without a film: from both directions, and of diffuse light on both sides.
     bare: [f64; 2],
-    bare_around: [f64; 2],
+    bare_diffuse: [f64; 2],
     /// What a film adds: from both directions, and of diffuse light on both sides.
     hats: [HatWeights; 2],
-    hats_around: [&'a HatWeights; 2],
+    hats_diffuse: [&'a HatWeights; 2],
 }
 
 impl<'a> MissingEnergy<'a> {
@@ -33,28 +33,29 @@ impl<'a> MissingEnergy<'a> {
             side,
             to,
             bare: [near.missing_energy(from), if crosses { far } else { near }.missing_energy(to)],
-            bare_around: [near.mean_missing_energy(), far.mean_missing_energy()],
+            bare_diffuse: [near.mean_missing_energy(), far.mean_missing_energy()],
             hats: [kernels[0].at(from), kernels[side].at(to)],
-            hats_around: kernels.map(|kernel| &kernel.mean),
+            hats_diffuse: kernels.map(|kernel| &kernel.mean),
         }
     }
 
     /// Returns BSDF times cosine of a lane, times `square` where light crosses. `single` is the lane's share of the
-    /// light that a facet sends on; `flow` holds the other factors of single scattering.
-    pub(super) fn value(&self, averages: &[Averages; 2], flow: &BsdfValue, single: f64, square: f64) -> f64 {
-        let Self { side, to, bare, bare_around, hats, hats_around } = self;
-        let around = [0, 1].map(|i| (bare_around[i] + averages[i].added(hats_around[i])).max(f64::MIN_POSITIVE));
+    /// light that a facet sends on; `bsdf` holds the other factors of single scattering.
+    pub(super) fn value(&self, averages: &[Averages; 2], bsdf: &BsdfValue, single: f64, square: f64) -> f64 {
+        let Self { side, to, bare, bare_diffuse, hats, hats_diffuse } = self;
+        let diffuse = [0, 1]
+            .map(|i| (bare_diffuse[i] + averages[i].added_missing_energy(hats_diffuse[i])).max(f64::MIN_POSITIVE));
         // Share of the missing energy that an absorbing film leaves: on the viewer's side, and on the way across.
-        let left = [0, 1].map(|i| (averages[i].mean[0] + averages[i].mean[1]).min(1.0));
-        let left_on_way = [left[0], (left[0] * left[1]).sqrt()][*side];
+        let unabsorbed = [0, 1].map(|i| (averages[i].mean[0] + averages[i].mean[1]).min(1.0));
+        let unabsorbed_on_way = [unabsorbed[0], (unabsorbed[0] * unabsorbed[1]).sqrt()][*side];
         // Share of the missing energy that crosses in the end.
-        let enters = averages[0].mean[1] / left[0].max(f64::MIN_POSITIVE);
-        let crossing = (enters * around[1] / around[0].max(around[1])).min(1.0);
-        let way = if *side == 1 { crossing * square } else { 1.0 - crossing };
-        let [from_missing, to_missing] =
-            [(0, 0), (1, *side)].map(|(end, side)| (bare[end] + averages[side].added(&hats[end])).max(0.0));
-        let multiple = from_missing * to_missing / around[*side] * to / PI;
-        way * left_on_way * multiple + single * flow.facet
+        let enters = averages[0].mean[1] / unabsorbed[0].max(f64::MIN_POSITIVE);
+        let crossing = (enters * diffuse[1] / diffuse[0].max(diffuse[1])).min(1.0);
+        let way_share = if *side == 1 { crossing * square } else { 1.0 - crossing };
+        let [from_missing, to_missing] = [(0, 0), (1, *side)]
+            .map(|(end, side)| (bare[end] + averages[side].added_missing_energy(&hats[end])).max(0.0));
+        let multiple = from_missing * to_missing / diffuse[*side] * to / PI;
+        way_share * unabsorbed_on_way * multiple + single * bsdf.facet
     }
 }
 
@@ -66,7 +67,7 @@ pub(super) fn averages<'a, const N: usize>(
 ) -> [Averages<'a>; 2] {
     let turned = context.turned_around();
     [(context, false), (&turned, true)].map(|(from, is_beyond)| {
-        let ([here, there], own) = (from.refracting(lane), [from.incident_of(lane), from.beyond_of(lane)]);
+        let ([here, there], own) = (from.ray_indices(lane), [from.incident_of(lane), from.beyond_of(lane)]);
         local.averages(lane, local.inside != is_beyond, [own[0], own[1], here, there], |stack| {
             let stack = if is_beyond { &stack.turned_around() } else { stack };
             let bare = |cos: f64| {
@@ -74,10 +75,10 @@ pub(super) fn averages<'a, const N: usize>(
                 [interface.reflectance, interface.transmittance]
             };
             let film = |cos: f64| {
-                let goes_on = bare(cos)[1] > 0.0;
-                shares_of_lane(from, lane, cos, goes_on, |n1, n2, q1| stack.shares(n1, n2.into(), q1)).means()
+                let crosses = bare(cos)[1] > 0.0;
+                shares_of_lane(from, lane, cos, crosses, |n1, n2, q1| stack.shares(n1, n2.into(), q1)).means()
             };
-            FilmAverages::new(stack.is_slow(), [here, there], there, film, bare)
+            FilmAverages::new(stack.varies_slowly(), [here, there], there, film, bare)
         })
     })
 }

@@ -2,7 +2,7 @@ use std::f64::consts::{LN_10, PI};
 use std::sync::OnceLock;
 
 use super::albedo_table::AlbedoTable;
-use super::facets::{OfFacet, later_digits};
+use super::facets::{FacetFunction, later_digits};
 use super::film_kernel::FilmKernel;
 use super::fresnel::diffuse_transmittance;
 use super::{BsdfValue, Facet, Facets};
@@ -27,11 +27,11 @@ pub struct RoughInterface {
 }
 
 /// Number of steps between rows for ratios above 1, and as many below.
-const RATIOS: usize = 160;
+const RATIO_STEPS: usize = 160;
 /// The smallest and the largest |ln(n2 / n1)| of the rows; the largest is that of the highest possible index and
 /// vacuum. From row to row it grows by a sixteenth, since nearly equal indices reflect grazing light below a cosine of
 /// about its square root.
-const SPAN: [f64; 2] = [1e-4, LN_10];
+const LOG_RATIO_RANGE: [f64; 2] = [1e-4, LN_10];
 /// Steps of a row over the cosine.
 const STEPS: usize = 192;
 /// Steps of a row of a film's kernel over the cosine.
@@ -40,8 +40,8 @@ const KERNEL_STEPS: usize = 64;
 impl RoughInterface {
     /// Makes a boundary whose facets have slopes of width `alpha`.
     pub fn new(alpha: f64) -> Self {
-        let rows = (0..2 * (RATIOS + 1)).map(|_| OnceLock::new()).collect();
-        let kernels = (0..2 * (RATIOS + 1)).map(|_| OnceLock::new()).collect();
+        let rows = (0..2 * (RATIO_STEPS + 1)).map(|_| OnceLock::new()).collect();
+        let kernels = (0..2 * (RATIO_STEPS + 1)).map(|_| OnceLock::new()).collect();
         Self { facets: Facets::new(alpha), rows, kernels }
     }
 
@@ -57,8 +57,8 @@ impl RoughInterface {
         // Diffuse light in equilibrium arrives in proportion to n^2 from each side, and equally much crosses both ways.
         let enters = diffuse_transmittance(n2 / n1);
         let leaves = enters * (n1 / n2) * (n1 / n2);
-        let most = near.mean_missing_energy().max(far.mean_missing_energy());
-        let crossing = [enters * far.mean_missing_energy() / most, leaves * near.mean_missing_energy() / most];
+        let largest = near.mean_missing_energy().max(far.mean_missing_energy());
+        let crossing = [enters * far.mean_missing_energy() / largest, leaves * near.mean_missing_energy() / largest];
         FacetSides { facets: &self.facets, indices: [n1, n2], near, far, crossing, straight: enters * leaves }
     }
 
@@ -68,20 +68,20 @@ impl RoughInterface {
         let (denser, place) = place(n1, n2);
         [denser, !denser].map(|denser| {
             let row = place.round() as usize;
-            self.kernels[row + if denser { RATIOS + 1 } else { 0 }]
+            self.kernels[row + if denser { RATIO_STEPS + 1 } else { 0 }]
                 .get_or_init(|| kernel(&self.facets, ratio(denser, row)))
         })
     }
 
     /// Returns the tables at a place in 0..RATIOS, for light that meets the denser medium or the rarer one.
     fn side(&self, denser: bool, place: f64) -> Side<'_> {
-        let below = (place as usize).min(RATIOS - 1);
+        let below = (place as usize).min(RATIO_STEPS - 1);
         let rows = [below, below + 1].map(|row| self.row(denser, row));
-        Side { rows, part: place - below as f64 }
+        Side { rows, fraction: place - below as f64 }
     }
 
     fn row(&self, denser: bool, row: usize) -> &AlbedoTable {
-        self.rows[row + if denser { RATIOS + 1 } else { 0 }]
+        self.rows[row + if denser { RATIO_STEPS + 1 } else { 0 }]
             .get_or_init(|| missing_energy(&self.facets, ratio(denser, row)))
     }
 }
@@ -89,15 +89,16 @@ impl RoughInterface {
 /// Returns whether the medium beyond is denser, and the place of the indices among the rows.
 fn place(n1: f64, n2: f64) -> (bool, f64) {
     let ratio = libm::log(n2 / n1);
-    let [least, most] = SPAN;
-    let place = libm::log(ratio.abs().clamp(least, most) / least) / libm::log(most / least) * RATIOS as f64;
+    let [smallest, largest] = LOG_RATIO_RANGE;
+    let place =
+        libm::log(ratio.abs().clamp(smallest, largest) / smallest) / libm::log(largest / smallest) * RATIO_STEPS as f64;
     (ratio > 0.0, place)
 }
 
 /// Returns the ratio of the indices of a row.
 fn ratio(denser: bool, row: usize) -> f64 {
-    let [least, most] = SPAN;
-    let size = least * libm::pow(most / least, row as f64 / RATIOS as f64);
+    let [smallest, largest] = LOG_RATIO_RANGE;
+    let size = smallest * libm::pow(largest / smallest, row as f64 / RATIO_STEPS as f64);
     libm::exp(if denser { size } else { -size })
 }
 
@@ -107,7 +108,7 @@ fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
     FilmKernel::new(facets.alpha(), ratio, KERNEL_STEPS, |z, add| {
         for (directions, weight) in visible.from(z) {
             let facet = Facet::new(facets, [1.0, ratio], straight, directions, None);
-            add(facet.cos[0], weight, facet.all.map(|left| 1.0 - left));
+            add(facet.cos[0], weight, facet.unshadowed.map(|left| 1.0 - left));
         }
     })
 }
@@ -116,19 +117,19 @@ fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
 /// index beyond is `ratio` times that on this side.
 fn missing_energy(facets: &Facets, ratio: f64) -> AlbedoTable {
     let (straight, visible) = (straight(ratio), facets.visible(ratio));
-    AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, SecondFacet { facets: *facets, ratio, straight }))
+    AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, SecondFacetShare { facets: *facets, ratio, straight }))
 }
 
 /// The share of light that meets a second facet.
-struct SecondFacet {
+struct SecondFacetShare {
     facets: Facets,
     ratio: f64,
     straight: f64,
 }
 
-impl OfFacet for SecondFacet {
+impl FacetFunction for SecondFacetShare {
     #[inline(always)]
-    fn of(&self, wo: DVec3, h: DVec3) -> f64 {
+    fn value_at(&self, wo: DVec3, h: DVec3) -> f64 {
         Facet::new(&self.facets, [1.0, self.ratio], self.straight, [wo, h], None).multiple
     }
 }
@@ -143,24 +144,24 @@ fn straight(ratio: f64) -> f64 {
 #[derive(Clone, Copy, Debug)]
 pub struct Side<'a> {
     rows: [&'a AlbedoTable; 2],
-    part: f64,
+    fraction: f64,
 }
 
 impl Side<'_> {
-    fn mix(&self, read: impl Fn(&AlbedoTable) -> f64) -> f64 {
+    fn interpolate(&self, read: impl Fn(&AlbedoTable) -> f64) -> f64 {
         let [a, b] = self.rows.map(read);
-        a + self.part * (b - a)
+        a + self.fraction * (b - a)
     }
 
     /// Returns the share of light from the cosine `z` that meets a second facet.
     pub fn missing_energy(&self, z: f64) -> f64 {
         let place = self.rows[0].place(z);
-        self.mix(|row| row.at(place))
+        self.interpolate(|row| row.at(place))
     }
 
     /// Returns the share of diffuse light that meets a second facet.
     pub fn mean_missing_energy(&self) -> f64 {
-        self.mix(|row| row.mean)
+        self.interpolate(|row| row.mean)
     }
 
     /// Returns the missing energy at the cosine `z`, and the density per steradian with which [`Side::draw`] draws
@@ -168,18 +169,22 @@ impl Side<'_> {
     fn missing_energy_and_density(&self, z: f64) -> [f64; 2] {
         let place = self.rows[0].place(z);
         let [[a, a_density], [b, b_density]] = self.rows.map(|row| row.value_and_density(place, z));
-        [a + self.part * (b - a), a_density + self.often() * (b_density - a_density)]
+        [a + self.fraction * (b - a), a_density + self.second_row_chance() * (b_density - a_density)]
     }
 
     /// Returns the probability of drawing from the second row.
-    fn often(&self) -> f64 {
-        self.part * self.rows[1].mean / self.mean_missing_energy()
+    fn second_row_chance(&self) -> f64 {
+        self.fraction * self.rows[1].mean / self.mean_missing_energy()
     }
 
     /// Samples a direction above the surface, nearly in proportion to the missing energy times the cosine.
     pub fn draw(&self, u: [f64; 2]) -> DVec3 {
-        let often = self.often();
-        let (row, left) = if u[0] < often { (1, u[0] / often) } else { (0, (u[0] - often) / (1.0 - often)) };
+        let second_row_chance = self.second_row_chance();
+        let (row, left) = if u[0] < second_row_chance {
+            (1, u[0] / second_row_chance)
+        } else {
+            (0, (u[0] - second_row_chance) / (1.0 - second_row_chance))
+        };
         self.rows[row].draw([left, u[1]])
     }
 }
@@ -230,11 +235,11 @@ impl FacetSides<'_> {
             return [above, DVec3 { z: -beyond.z, ..beyond }]
                 .map(|wi| (wi.z != 0.0).then_some(FacetSample { wi, facet: None }));
         }
-        [0, 1].map(|i| (facet.single[i] > 0.0).then(|| FacetSample { wi: facet.ways[i], facet: Some(facet) }))
+        [0, 1].map(|i| (facet.single[i] > 0.0).then(|| FacetSample { wi: facet.directions[i], facet: Some(facet) }))
     }
 
-    fn facet(&self, directions: [DVec3; 2], known: Option<DVec3>) -> Facet {
-        Facet::new(self.facets, self.indices, self.straight, directions, known)
+    fn facet(&self, directions: [DVec3; 2], known_wi: Option<DVec3>) -> Facet {
+        Facet::new(self.facets, self.indices, self.straight, directions, known_wi)
     }
 
     /// Returns what is reflected from `wi`, above the surface, to `wo`. The facet is computed if it is not given.
@@ -243,7 +248,7 @@ impl FacetSides<'_> {
         let [missing, lobe] = self.near.missing_energy_and_density(wi.z);
         let lobes = (1.0 - self.crossing[0]) * multiple * missing / self.near.mean_missing_energy() * wi.z / PI;
         let facet = facet.or_else(|| Some(self.facet([wo, (wo + wi).try_normalize()?], Some(wi))));
-        let single = facet.map_or(BsdfValue::default(), |facet| facet.flow(0, self.facets.pdf(wo, facet.h)));
+        let single = facet.map_or(BsdfValue::default(), |facet| facet.bsdf(0, self.facets.pdf(wo, facet.h)));
         single + BsdfValue { value: lobes, pdf: multiple * lobe, ..BsdfValue::default() }
     }
 
@@ -257,12 +262,12 @@ impl FacetSides<'_> {
         let lobes = self.crossing[0] * multiple * missing / self.far.mean_missing_energy() * -wi.z / PI;
         let facet = facet.or_else(|| {
             let h = ((wo * n1 + wi * n2) * (n1 - n2).signum()).try_normalize()?;
-            let met = h.z > 0.0 && wo.dot(h) > 0.0 && wi.dot(h) < 0.0;
-            met.then(|| self.facet([wo, h], Some(wi)))
+            let is_visible = h.z > 0.0 && wo.dot(h) > 0.0 && wi.dot(h) < 0.0;
+            is_visible.then(|| self.facet([wo, h], Some(wi)))
         });
         let single = facet.filter(|facet| facet.cos[1] > 0.0).map_or(BsdfValue::default(), |facet| {
-            let flow = facet.flow(1, self.facets.refraction_pdf(wo, facet.h, self.indices, facet.cos));
-            BsdfValue { value: flow.value * square, facet: flow.facet * square, ..flow }
+            let bsdf = facet.bsdf(1, self.facets.refraction_pdf(wo, facet.h, self.indices, facet.cos));
+            BsdfValue { value: bsdf.value * square, facet: bsdf.facet * square, ..bsdf }
         });
         single + BsdfValue { value: lobes * square, pdf: multiple * lobe, ..BsdfValue::default() }
     }

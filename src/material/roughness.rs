@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
-use super::facets::OfFacet;
+use super::facets::FacetFunction;
 use super::{Facets, Lobes, RoughInterface, ScatterContext, reflect};
 use crate::math::{DVec3, Frame};
 
@@ -163,7 +163,7 @@ impl RoughSurface {
         wi: DVec3,
     ) -> Option<RoughReflection> {
         let frame = Frame::about(context.normal);
-        self.evaluate(above(&frame, context.wo), frame.to_local(wi))
+        self.evaluate(to_local_above(&frame, context.wo), frame.to_local(wi))
     }
 
     fn reflection(&self, wo: DVec3, wi: DVec3, h: DVec3) -> Option<RoughReflection> {
@@ -183,7 +183,7 @@ impl RoughSurface {
 }
 
 /// Returns the viewer's direction in the surface's frame, moved onto the surface if rounding has put it below.
-pub(super) fn above(frame: &Frame, wo: DVec3) -> DVec3 {
+pub(super) fn to_local_above(frame: &Frame, wo: DVec3) -> DVec3 {
     let local = frame.to_local(wo);
     DVec3 { z: local.z.max(0.0), ..local }
 }
@@ -191,15 +191,15 @@ pub(super) fn above(frame: &Frame, wo: DVec3) -> DVec3 {
 /// Tabulates the share of light from each cosine that meets a second facet, the mean over the visible facets.
 fn missing_energy(facets: &Facets) -> AlbedoTable {
     let visible = facets.visible(1.0);
-    AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, Shadowed(*facets)))
+    AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, ShadowedShare(*facets)))
 }
 
 /// The share that meets a second facet if the first one reflects all light.
-struct Shadowed(Facets);
+struct ShadowedShare(Facets);
 
-impl OfFacet for Shadowed {
+impl FacetFunction for ShadowedShare {
     #[inline(always)]
-    fn of(&self, wo: DVec3, h: DVec3) -> f64 {
+    fn value_at(&self, wo: DVec3, h: DVec3) -> f64 {
         self.0.unshadowed_and_shadowed(wo, reflect(wo, h))[1]
     }
 }

@@ -90,13 +90,13 @@ impl<const N: usize> ScatterContext<'_, N> {
     /// Returns the context of the same surface seen from its other side.
     pub fn turned_around(self) -> Self {
         let [here, beyond] = self.direction_indices;
-        let (incident, beyond_it) = (self.beyond, self.incident);
+        let (incident, new_beyond) = (self.beyond, self.incident);
         let from_inside = !self.from_inside;
-        Self { from_inside, incident, beyond: beyond_it, direction_indices: [beyond, here], ..self }
+        Self { from_inside, incident, beyond: new_beyond, direction_indices: [beyond, here], ..self }
     }
 
     /// Returns the indices on both sides by which a lane's ray is refracted.
-    pub(super) fn refracting(&self, lane: usize) -> [f64; 2] {
+    pub(super) fn ray_indices(&self, lane: usize) -> [f64; 2] {
         let [here, beyond] = self.direction_indices;
         [here.unwrap_or_else(|| self.incident_of(lane)), beyond.unwrap_or_else(|| self.beyond_of(lane))]
     }
@@ -118,7 +118,7 @@ impl<const N: usize> ScatterContext<'_, N> {
             Some(directions) => shared_transmittance([&incident, &beyond], directions, cos),
             None => std::array::from_fn(|i| {
                 let own = [&[incident[i]], &[beyond[i]]];
-                shared_transmittance::<1>(own, self.refracting(i), cos)[0]
+                shared_transmittance::<1>(own, self.ray_indices(i), cos)[0]
             }),
         })
     }
@@ -130,11 +130,11 @@ impl<const N: usize> ScatterContext<'_, N> {
         if self.direction_indices == [None; 2] {
             return [n1, n2, cos];
         }
-        let along @ [here, beyond] = self.refracting(lane);
-        if along == own || here * here * (1.0 - cos * cos) >= beyond * beyond {
+        let ray @ [here, beyond] = self.ray_indices(lane);
+        if ray == own || here * here * (1.0 - cos * cos) >= beyond * beyond {
             return [here, beyond, cos];
         }
-        [n1, n2, SharedRay::new(along, cos).normal_component(own) / n1]
+        [n1, n2, SharedRay::new(ray, cos).normal_component(own) / n1]
     }
 
     /// Returns the factor that turns shares of crossing light, computed as if the light source were the viewer, into
@@ -146,7 +146,7 @@ impl<const N: usize> ScatterContext<'_, N> {
     pub fn forward(&self) -> Option<Lanes<N>> {
         (self.direction_indices != [None; 2]).then(|| {
             Lanes::from_fn(|i| {
-                let [here, beyond] = self.refracting(i);
+                let [here, beyond] = self.ray_indices(i);
                 let ratio = (self.beyond_of(i) / self.incident_of(i)) * (here / beyond);
                 ((ratio * ratio) * (ratio * ratio)) as f32
             })
@@ -161,9 +161,9 @@ impl<const N: usize> ScatterContext<'_, N> {
         {
             return false;
         }
-        let first = self.refracting(0);
-        let same = |i: usize| self.refracting(i) == first;
-        !((1..N).all(same) || (self.together > 0.0 && self.is_one_way()))
+        let first = self.ray_indices(0);
+        let same = |i: usize| self.ray_indices(i) == first;
+        !((1..N).all(same) || (self.together > 0.0 && self.lanes_stay_together()))
     }
 
     /// Returns the smallest and the largest index by which rays are refracted on one side: the given one, or the lanes'
@@ -178,7 +178,7 @@ impl<const N: usize> ScatterContext<'_, N> {
 
     /// Returns whether the outermost refracted rays lie within `together`. Considers all lanes of a draw, on this ray
     /// or not, so that the result does not depend on what was absorbed earlier.
-    fn is_one_way(&self) -> bool {
+    fn lanes_stay_together(&self) -> bool {
         let cos = self.wo.dot(self.normal).clamp(0.0, 1.0);
         let [given, given_beyond] = self.direction_indices;
         let (here, beyond) = (self.range(given, self.incident), self.range(given_beyond, self.beyond));
@@ -186,11 +186,11 @@ impl<const N: usize> ScatterContext<'_, N> {
             [here[0] / beyond[1], here[1] / beyond[0]]
         } else {
             // Plain comparisons suffice, since no index is NaN: `min` and `max` would check for it in every lane.
-            let wider = |[l, m]: [f64; 2], [here, beyond]: [f64; 2]| {
+            let widen = |[l, m]: [f64; 2], [here, beyond]: [f64; 2]| {
                 let x = here / beyond;
                 [if x < l { x } else { l }, if x > m { x } else { m }]
             };
-            (0..N).map(|i| self.refracting(i)).fold([f64::INFINITY, 0.0], wider)
+            (0..N).map(|i| self.ray_indices(i)).fold([f64::INFINITY, 0.0], widen)
         };
         let [a, b] = ratios.map(|eta| {
             let sin = eta * (1.0 - cos * cos).sqrt();

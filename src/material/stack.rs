@@ -18,7 +18,7 @@ pub const COHERENT_NM: f64 = 6500.0;
 /// only.
 pub const PHASE_STEP: f64 = 2.0;
 /// Number of samples over a band, or over a fringe, where a single one is not enough.
-const PLACES: usize = 16;
+const BAND_SAMPLES: usize = 16;
 
 /// One layer, for light of one wavelength.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -122,12 +122,12 @@ impl Stack {
     /// Makes a stack for light of a wavelength in nm and the relative width of its band. Layers without thickness are
     /// left out.
     pub fn new([nm, band]: [f64; 2], layers: impl Iterator<Item = Layer>) -> Self {
-        Self { layers: with_thickness(layers).collect(), nm, band }
+        Self { layers: nonempty_layers(layers).collect(), nm, band }
     }
 
     /// Returns whether [`new`](Self::new) would make this stack.
     pub fn is(&self, [nm, band]: [f64; 2], layers: impl Iterator<Item = Layer>) -> bool {
-        self.nm == nm && self.band == band && self.layers.iter().copied().eq(with_thickness(layers))
+        self.nm == nm && self.band == band && self.layers.iter().copied().eq(nonempty_layers(layers))
     }
 
     /// Returns the layers, the viewer's side first.
@@ -142,7 +142,7 @@ impl Stack {
 
     /// Returns whether its shares change slowly with the angle: few layers, with a total of at most a micrometer. The
     /// shares of a mirror of nine quarter waves change within a few degrees.
-    pub(super) fn is_slow(&self) -> bool {
+    pub(super) fn varies_slowly(&self) -> bool {
         self.layers().len() <= 3 && self.thickness_nm() <= 1000.0
     }
 
@@ -168,38 +168,44 @@ impl Stack {
             return StackShares { refracted: all, ..StackShares::default() };
         }
         if self.phase_step() <= PHASE_STEP {
-            return self.coherent(n1, n2, q1, |_, _| 0.0);
+            return self.coherent_shares(n1, n2, q1, |_, _| 0.0);
         }
-        let thick = |layer: &Layer| layer.optical_nm() > COHERENT_NM;
-        let several = self.layers().iter().filter(|layer| thick(layer)).count() > 1;
-        let places = if several { 4 * PLACES } else { PLACES };
+        let is_thick = |layer: &Layer| layer.optical_nm() > COHERENT_NM;
+        let has_several_thick = self.layers().iter().filter(|layer| is_thick(layer)).count() > 1;
+        let samples = if has_several_thick { 4 * BAND_SAMPLES } else { BAND_SAMPLES };
         let mut mean = StackShares::default();
-        for place in 0..places {
+        for sample in 0..samples {
             // A lattice over the phases of thick layers (Korobov 1959), which is uniform in each of them.
-            let mut at = place;
-            let shares = self.coherent(n1, n2, q1, |layer, delta| {
-                if thick(layer) {
-                    let turn = at as f64 / places as f64 * PI;
-                    at = at * 27 % places;
-                    return turn;
+            let mut at = sample;
+            let shares = self.coherent_shares(n1, n2, q1, |layer, delta| {
+                if is_thick(layer) {
+                    let extra_phase = at as f64 / samples as f64 * PI;
+                    at = at * 27 % samples;
+                    return extra_phase;
                 }
-                ((place as f64 + 0.5) / places as f64 - 0.5) * self.band * delta
+                ((sample as f64 + 0.5) / samples as f64 - 0.5) * self.band * delta
             });
-            mean.reflected.add(&shares.reflected, 1.0 / places as f64);
-            mean.refracted.add(&shares.refracted, 1.0 / places as f64);
+            mean.reflected.add(&shares.reflected, 1.0 / samples as f64);
+            mean.refracted.add(&shares.refracted, 1.0 / samples as f64);
         }
         mean
     }
 
-    /// Returns the shares of light of one wavelength; `turn` returns what to add to each layer's phase.
+    /// Returns the shares of light of one wavelength; `extra_phase` returns what to add to each layer's phase.
     ///
     /// Abeles' matrices (Born & Wolf 1999, *Principles of Optics*, section 1.6.2), with y = q for s and y = q / n^2 for
     /// p, q = sqrt(n^2 - n1^2 sin^2), Im q <= 0. The amplitudes of p are thus those of the magnetic field, and
     /// r_p = -r_s at normal incidence. sin(delta) / q serves both off-diagonal terms and is finite at the critical
     /// angle of a layer. Each matrix is divided by e^|Im delta|, so that nothing overflows, however much is absorbed.
-    fn coherent(&self, n1: f64, n2: Complex, q1: f64, mut turn: impl FnMut(&Layer, f64) -> f64) -> StackShares {
-        let across = |n: Complex| ((n - n1.into()) * (n + n1.into()) + (q1 * q1).into()).decaying_root();
-        let q2 = across(n2);
+    fn coherent_shares(
+        &self,
+        n1: f64,
+        n2: Complex,
+        q1: f64,
+        mut extra_phase: impl FnMut(&Layer, f64) -> f64,
+    ) -> StackShares {
+        let normal_component = |n: Complex| ((n - n1.into()) * (n + n1.into()) + (q1 * q1).into()).decaying_root();
+        let q2 = normal_component(n2);
         let (y1, y2) = ([q1, q1 / (n1 * n1)].map(Complex::from), [q2, q2 / (n2 * n2)]);
         let mut fields = y2.map(|y| [Complex::ONE, y]);
         let mut decay = 0.0;
@@ -210,15 +216,15 @@ impl Stack {
             if layer.index.im == 0.0 && q_squared > 0.0 {
                 let q = q_squared.sqrt();
                 let delta = q * (TAU * waves);
-                pass_clear(&mut fields, q, n * n, delta + turn(layer, delta));
+                propagate_clear(&mut fields, q, n * n, delta + extra_phase(layer, delta));
                 continue;
             }
-            let q = across(layer.index);
+            let q = normal_component(layer.index);
             let delta = q * (TAU * waves);
             let mut phase = delta.re;
             // Waves that only decay have no fringes.
             if q.re > -q.im {
-                phase += turn(layer, delta.re);
+                phase += extra_phase(layer, delta.re);
             }
             let (sin, cos) = libm::sincos(phase);
             let lost = -libm::expm1(2.0 * delta.im);
@@ -252,13 +258,13 @@ impl Stack {
     }
 }
 
-fn with_thickness(layers: impl Iterator<Item = Layer>) -> impl Iterator<Item = Layer> {
+fn nonempty_layers(layers: impl Iterator<Item = Layer>) -> impl Iterator<Item = Layer> {
     layers.filter(|layer| layer.thickness_nm > 0.0)
 }
 
 /// Propagates the fields of s and p to the near side of a layer that neither absorbs nor reflects totally. Its matrices
 /// are real except for a factor i.
-fn pass_clear(fields: &mut [[Complex; 2]; 2], q: f64, n_squared: f64, phase: f64) {
+fn propagate_clear(fields: &mut [[Complex; 2]; 2], q: f64, n_squared: f64, phase: f64) {
     let (sin, cos) = libm::sincos(phase);
     let (over_q, times_q) = (sin / q, sin * q);
     let [s, p] = [[over_q, times_q], [over_q * n_squared, times_q / n_squared]];
@@ -281,35 +287,35 @@ mod tests {
         Stack::new([nm, 0.0], layers.iter().map(layer))
     }
 
-    fn met(layers: &[([f64; 2], f64)], nm: f64, n1: f64, n2: [f64; 2], degrees: f64) -> StackShares {
+    fn shares_at(layers: &[([f64; 2], f64)], nm: f64, n1: f64, n2: [f64; 2], degrees: f64) -> StackShares {
         stack(layers, nm).shares(n1, Complex::new(n2[0], -n2[1]), n1 * (degrees * DEGREE).cos())
     }
 
     /// Returns a, and d, c and q divided by it.
-    fn numbers(share: &PolarizedShare) -> [f64; 4] {
+    fn normalized_elements(share: &PolarizedShare) -> [f64; 4] {
         let Block { a, d, c, q } = share.block();
         [a, d / a, c / a, q / a]
     }
 
-    fn near(found: f64, expected: f64, digits: f64) {
-        assert!((found - expected).abs() < digits, "{found} for {expected}");
+    fn assert_near(found: f64, expected: f64, tolerance: f64) {
+        assert!((found - expected).abs() < tolerance, "{found} for {expected}");
     }
 
     fn phase(share: &PolarizedShare) -> f64 {
-        let [_, _, c, q] = numbers(share);
+        let [_, _, c, q] = normalized_elements(share);
         q.atan2(c).abs() / DEGREE
     }
 
     #[test]
-    fn no_layers_are_fresnel_s_boundary() {
+    fn without_layers_the_boundary_is_fresnel_s() {
         let both_ways = |degrees: f64| [(degrees, [1.0, 1.5]), (degrees, [1.5, 1.0])];
         for (degrees, [n1, n2]) in [0.0, 30.0, 45.0, 60.0, 75.0].into_iter().flat_map(both_ways) {
-            let (shares, cos) = (met(&[], 550.0, n1, [n2, 0.0], degrees), f64::cos(degrees * DEGREE));
+            let (shares, cos) = (shares_at(&[], 550.0, n1, [n2, 0.0], degrees), f64::cos(degrees * DEGREE));
             let fresnel = [Block::reflected(n1, n2, cos), Block::refracted(n1, n2, cos)];
             for (share, Block { a, d, c, q }) in [shares.reflected, shares.refracted].iter().zip(fresnel) {
                 let found = share.block();
                 for (found, expected) in [(found.a, a), (found.d, d), (found.c, c), (found.q, q)] {
-                    near(found, expected, 1e-14);
+                    assert_near(found, expected, 1e-14);
                 }
             }
         }
@@ -335,19 +341,19 @@ mod tests {
             let q1 = n1 * random(0.0, 1.0);
             let shares = stack.shares(n1, n2.into(), q1);
             let (r, t) = (shares.reflected, shares.refracted);
-            near(r.s + t.s, 1.0, 1e-12);
-            near(r.p + t.p, 1.0, 1e-12);
+            assert_near(r.s + t.s, 1.0, 1e-12);
+            assert_near(r.p + t.p, 1.0, 1e-12);
             let q2_squared = q1 * q1 + (n2 - n1) * (n2 + n1);
             if q2_squared > 0.0 {
                 let back = stack.turned_around().shares(n2, n1.into(), q2_squared.sqrt());
-                near(back.refracted.s, t.s, 1e-10);
-                near(back.refracted.p, t.p, 1e-10);
+                assert_near(back.refracted.s, t.s, 1e-10);
+                assert_near(back.refracted.p, t.p, 1e-10);
             }
         }
     }
 
     #[test]
-    fn clear_layers_do_what_layers_do_that_hardly_absorb() {
+    fn clear_layers_act_like_layers_that_hardly_absorb() {
         let mut random = random();
         for _ in 0..2000 {
             let layer = |random: &mut dyn FnMut(f64, f64) -> f64| (random(1.0, 2.5), random(0.0, 2000.0));
@@ -356,32 +362,33 @@ mod tests {
             // Light that comes from glass is totally reflected by some of the layers, and part of it tunnels through.
             let of = |k: f64| {
                 let layers: Vec<_> = layers.iter().map(|&(n, thickness)| ([n, k], thickness)).collect();
-                met(&layers, nm, 1.5, [1.7, 0.0], degrees)
+                shares_at(&layers, nm, 1.5, [1.7, 0.0], degrees)
             };
             let [clear, dim] = [of(0.0), of(1e-18)].map(|shares| {
                 [shares.reflected, shares.refracted].map(|way| [way.s, way.p, way.cross.re, way.cross.im])
             });
             for (clear, dim) in clear.as_flattened().iter().zip(dim.as_flattened()) {
-                near(*clear, *dim, 1e-11);
+                assert_near(*clear, *dim, 1e-11);
             }
         }
     }
 
     #[test]
-    fn an_absorbing_layer() {
-        let StackShares { reflected: r, refracted: t } = met(&[([2.3, 0.1], 100.0)], 550.0, 1.0, [1.5, 0.0], 30.0);
+    fn an_absorbing_layer_reflects_transmits_and_absorbs() {
+        let StackShares { reflected: r, refracted: t } =
+            shares_at(&[([2.3, 0.1], 100.0)], 550.0, 1.0, [1.5, 0.0], 30.0);
         let found = [r.s, t.s, 1.0 - r.s - t.s, r.p, t.p, 1.0 - r.p - t.p];
         let expected = [0.170_494, 0.654_205, 0.175_300, 0.099_452, 0.711_481, 0.189_067];
-        (0..6).for_each(|i| near(found[i], expected[i], 1e-6));
+        (0..6).for_each(|i| assert_near(found[i], expected[i], 1e-6));
     }
 
     #[test]
-    fn a_quarter_wave_on_glass() {
+    fn a_quarter_wave_darkens_glass() {
         let quarter = [([1.38, 0.0], 550.0 / 4.0 / 1.38)];
-        let reflected = |degrees| met(&quarter, 550.0, 1.0, [BK7, 0.0], degrees).reflected;
+        let reflected = |degrees| shares_at(&quarter, 550.0, 1.0, [BK7, 0.0], degrees).reflected;
         let amplitude = (BK7 - 1.38 * 1.38) / (BK7 + 1.38 * 1.38);
-        near(reflected(0.0).mean(), amplitude * amplitude, 1e-12);
-        near(reflected(0.0).mean(), 0.012_709, 1e-6);
+        assert_near(reflected(0.0).mean(), amplitude * amplitude, 1e-12);
+        assert_near(reflected(0.0).mean(), 0.012_709, 1e-6);
         for (degrees, s, p, delta) in [
             (30.0, 0.020_783, 0.007_085, 178.5563),
             (45.0, 0.040_246, 0.001_373, 165.1251),
@@ -389,9 +396,9 @@ mod tests {
             (75.0, 0.304_050, 0.114_505, 5.9963),
         ] {
             let found = reflected(degrees);
-            near(found.s, s, 1e-6);
-            near(found.p, p, 1e-6);
-            near(phase(&found), delta, 2e-3);
+            assert_near(found.s, s, 1e-6);
+            assert_near(found.p, p, 1e-6);
+            assert_near(phase(&found), delta, 2e-3);
         }
     }
 
@@ -402,29 +409,29 @@ mod tests {
             [(1, 0.683_313, 0.535_443), (3, 0.955_855, 0.589_673), (5, 0.994_646, 0.123_001), (9, 0.999_924, 0.620_067)]
         {
             let layers: Vec<_> = std::iter::repeat_n([high, low], pairs).flatten().chain([high]).collect();
-            let reflected = |nm, degrees| met(&layers, nm, 1.0, [1.52, 0.0], degrees).reflected;
+            let reflected = |nm, degrees| shares_at(&layers, nm, 1.0, [1.52, 0.0], degrees).reflected;
             let y = (2.35_f64 / 1.38).powi(2 * pairs as i32) * 2.35 * 2.35 / 1.52;
-            near(reflected(550.0, 0.0).mean(), ((1.0 - y) / (1.0 + y)).powi(2), 1e-12);
-            near(reflected(550.0, 0.0).mean(), at_550, 1e-6);
-            near(reflected(450.0, 0.0).mean(), at_450, 1e-6);
+            assert_near(reflected(550.0, 0.0).mean(), ((1.0 - y) / (1.0 + y)).powi(2), 1e-12);
+            assert_near(reflected(550.0, 0.0).mean(), at_550, 1e-6);
+            assert_near(reflected(450.0, 0.0).mean(), at_450, 1e-6);
             if pairs == 5 {
-                near(reflected(550.0, 45.0).s, 0.997_526, 1e-6);
-                near(reflected(550.0, 45.0).p, 0.951_827, 1e-6);
+                assert_near(reflected(550.0, 45.0).s, 0.997_526, 1e-6);
+                assert_near(reflected(550.0, 45.0).p, 0.951_827, 1e-6);
             }
         }
     }
 
     #[test]
-    fn a_layer_on_metal() {
-        let found = met(&[([1.46, 0.0], 100.0)], 550.0, 1.0, [1.015, 6.627], 60.0).reflected;
-        near(found.s, 0.791_828, 1e-6);
-        near(found.p, 0.867_711, 1e-6);
-        near(phase(&found), 160.8335, 1e-3);
+    fn a_layer_changes_what_metal_reflects() {
+        let found = shares_at(&[([1.46, 0.0], 100.0)], 550.0, 1.0, [1.015, 6.627], 60.0).reflected;
+        assert_near(found.s, 0.791_828, 1e-6);
+        assert_near(found.p, 0.867_711, 1e-6);
+        assert_near(phase(&found), 160.8335, 1e-3);
     }
 
     #[test]
-    fn nothing_where_there_is_nothing_and_frustrated_total_reflection() {
-        let none = met(&[([1.33, 0.0], 0.0)], 550.0, 1.0, [1.0, 0.0], 37.0);
+    fn empty_layers_do_nothing_and_gaps_frustrate_total_reflection() {
+        let none = shares_at(&[([1.33, 0.0], 0.0)], 550.0, 1.0, [1.0, 0.0], 37.0);
         assert_eq!([none.reflected.mean(), none.refracted.mean()], [0.0, 1.0]);
         for (gap, s, p) in [
             (50.0, 0.196_161, 0.335_224),
@@ -432,20 +439,20 @@ mod tests {
             (200.0, 0.914_268, 0.956_591),
             (500.0, 0.999_695, 0.999_853),
         ] {
-            let found = met(&[([1.0, 0.0], gap)], 550.0, 1.5, [1.5, 0.0], 60.0);
-            near(found.reflected.s, s, 1e-6);
-            near(found.reflected.p, p, 1e-6);
-            near(found.reflected.s + found.refracted.s, 1.0, 1e-12);
+            let found = shares_at(&[([1.0, 0.0], gap)], 550.0, 1.5, [1.5, 0.0], 60.0);
+            assert_near(found.reflected.s, s, 1e-6);
+            assert_near(found.reflected.p, p, 1e-6);
+            assert_near(found.reflected.s + found.refracted.s, 1.0, 1e-12);
         }
         // At the critical angle of the gap, with a gap so thick that no light is left, and along the surface.
         let critical = (1.0_f64 / 1.5).asin() / DEGREE;
         for (degrees, gap) in [(critical, 300.0), (60.0, 100_000.0), (90.0, 300.0)] {
-            let found = met(&[([1.0, 0.0], gap)], 550.0, 1.5, [1.5, 0.0], degrees);
-            near(found.reflected.mean() + found.refracted.mean(), 1.0, 1e-12);
+            let found = shares_at(&[([1.0, 0.0], gap)], 550.0, 1.5, [1.5, 0.0], degrees);
+            assert_near(found.reflected.mean() + found.refracted.mean(), 1.0, 1e-12);
         }
-        let opaque = met(&[([0.06, 3.586], 100_000.0)], 548.6, 1.0, [1.5, 0.0], 20.0);
+        let opaque = shares_at(&[([0.06, 3.586], 100_000.0)], 548.6, 1.0, [1.5, 0.0], 20.0);
         assert_eq!(opaque.refracted.mean(), 0.0);
-        near(opaque.reflected.mean(), met(&[], 548.6, 1.0, [0.06, 3.586], 20.0).reflected.mean(), 1e-12);
+        assert_near(opaque.reflected.mean(), shares_at(&[], 548.6, 1.0, [0.06, 3.586], 20.0).reflected.mean(), 1e-12);
     }
 
     #[test]
@@ -454,20 +461,20 @@ mod tests {
             .map(|(index, thickness_nm)| Layer { index: Complex::from(index), thickness_nm });
         let [stack, both] = [1, 2].map(|count| Stack::new([550.0, 0.02], layers.into_iter().take(count)));
         let r = (0.33_f64 / 2.33).powi(2);
-        near(stack.shares(1.0, 1.0.into(), 1.0).reflected.mean(), 2.0 * r / (1.0 + r), 1e-12);
-        near(stack.shares(1.0, 1.0.into(), 1.0).reflected.mean(), 0.039_329_698, 1e-9);
+        assert_near(stack.shares(1.0, 1.0.into(), 1.0).reflected.mean(), 2.0 * r / (1.0 + r), 1e-12);
+        assert_near(stack.shares(1.0, 1.0.into(), 1.0).reflected.mean(), 0.039_329_698, 1e-9);
         // Two thick layers, against the mean over all pairs of phases.
         let found = both.shares(1.0, 1.5.into(), 0.8).reflected.mean();
         let mut mean = 0.0;
         for pair in 0..10_000 {
             let phases = [f64::from(pair % 100), f64::from(pair / 100)].map(|i| 0.01 * i * PI);
             let mut layer = 0;
-            let turned = both.coherent(1.0, 1.5.into(), 0.8, |_, _| {
+            let at_phases = both.coherent_shares(1.0, 1.5.into(), 0.8, |_, _| {
                 layer += 1;
                 phases[layer - 1]
             });
-            mean += 1e-4 * turned.reflected.mean();
+            mean += 1e-4 * at_phases.reflected.mean();
         }
-        near(found, mean, 1e-4);
+        assert_near(found, mean, 1e-4);
     }
 }

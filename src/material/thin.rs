@@ -1,5 +1,5 @@
-use super::degree::{degree, largest, of_all_lanes};
-use super::last::Last;
+use super::degree::{combined_degree, degree, max_degree};
+use super::last::LastResult;
 use super::{Block, Branch, Coating, Interface, Mueller, ScatterContext, StackShares, Straight, conductor_reflectance};
 use crate::spectrum::{Draw, LaneSet, Lanes, Quantity, Table};
 
@@ -98,19 +98,19 @@ impl Thin<Table> {
                 let film = film.local(context, false);
                 return mueller.set_lanes(axis, lanes, |lane| {
                     let n = context.incident_of(lane);
-                    let StackShares { reflected, refracted } = film.at_cosine(lane, n, n, cos);
+                    let StackShares { reflected, refracted } = film.shares_at_cosine(lane, n, n, cos);
                     if crosses { refracted.block() } else { reflected.block() }
                 });
             }
         };
         let (index, left) = (context.draw.read_exact(index), context.read(transmittance));
-        let mut last = Last::NONE;
+        let mut last = LastResult::NONE;
         mueller.set_lanes(axis, lanes, |lane| {
             let pane @ [n1, n2, t] = [context.incident_of(lane), index[lane], f64::from(left[lane])];
             if n1 == n2 {
                 return if crosses { Block::IDENTITY.times(t) } else { Block::default() };
             }
-            let [through, back] = last.of(pane, |[n1, n2, t]| {
+            let [through, back] = last.get_or_make(pane, |[n1, n2, t]| {
                 Block::of_pane(Block::reflected(n1, n2, cos), Block::refracted(n1, n2, cos), t)
             });
             if crosses { through } else { back }
@@ -127,23 +127,24 @@ impl Thin<Table> {
         match self {
             Self::Pane { index, transmittance } => {
                 let (index, left) = (context.draw.read_exact(index), context.read(transmittance));
-                let mut last = Last::NONE;
+                let mut last = LastResult::NONE;
                 for lane in present {
                     let pane = [context.incident_of(lane), index[lane], f64::from(left[lane])];
-                    let [through, back] = last.of(pane, |[n1, n2, t]| all_reflections(&Interface::new(n1, n2, cos), t));
+                    let [through, back] =
+                        last.get_or_make(pane, |[n1, n2, t]| pane_shares(&Interface::new(n1, n2, cos), t));
                     lanes[lane] = if crosses { through } else { back };
                 }
-                (mean(&lanes), largest(lanes.into_iter().map(degree)))
+                (mean(&lanes), max_degree(lanes.into_iter().map(degree)))
             }
             Self::Film(film) => {
                 let film = film.local(context, false);
                 for lane in present {
                     let n = context.incident_of(lane);
-                    let StackShares { reflected, refracted } = film.at_cosine(lane, n, n, cos);
+                    let StackShares { reflected, refracted } = film.shares_at_cosine(lane, n, n, cos);
                     let share = if crosses { refracted } else { reflected };
                     lanes[lane] = [share.s, share.p];
                 }
-                (mean(&lanes), of_all_lanes(lanes.into_iter()) as f32)
+                (mean(&lanes), combined_degree(lanes.into_iter()) as f32)
             }
         }
     }
@@ -155,7 +156,7 @@ impl Thin<Table> {
 /// With R of one surface, T = (1 - R)^2 t / (1 - R^2 t^2), and the pane reflects R + R t T (Stokes 1862, *On the
 /// Intensity of the Light Reflected from or Transmitted through a Pile of Plates*). All surfaces share one plane of
 /// incidence, so that s and p do not mix: each has its own series, and unpolarized light gets the mean of both.
-fn all_reflections(surface: &Interface, t: f64) -> [[f64; 2]; 2] {
+fn pane_shares(surface: &Interface, t: f64) -> [[f64; 2]; 2] {
     let [s, p] = [1.0, -1.0].map(|sign| {
         let r = surface.reflectance * (1.0 + sign * surface.polarization_reflected);
         let crosses = surface.transmittance * (1.0 + sign * surface.polarization_refracted);

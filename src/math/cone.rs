@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use super::{DVec3, Frame, cone, disk_in_square, square_around_disk, unit};
+use super::{DVec3, Frame, cone, disk_to_square, square_to_disk, unit};
 
 /// All directions within an angle of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +54,7 @@ impl Cone {
     /// Maps a point of the unit square to a direction in the cone. Equal areas of the inscribed disk map to equal solid
     /// angles, because 1 - cos is r^2 times that of the cone. Returns `None` outside the disk.
     pub fn sample(&self, place: [f64; 2]) -> Option<DVec3> {
-        let [x, y] = disk_in_square(place)?;
+        let [x, y] = square_to_disk(place)?;
         let here = (x * x + y * y) * self.one_minus_cos;
         let stretch = (self.one_minus_cos * (2.0 - here)).sqrt();
         Some(unit(Frame::about(self.axis).to_world(DVec3::new(x * stretch, y * stretch, 1.0 - here))))
@@ -71,7 +71,7 @@ impl Cone {
             return 0.0;
         }
         // The square has 4 / pi times the area of the disk, which maps to a solid angle of 2 pi (1 - cos).
-        let place = square_around_disk([local.x / stretch, local.y / stretch]);
+        let place = disk_to_square([local.x / stretch, local.y / stretch]);
         place.map_or(0.0, |place| density_at(place) / (8.0 * self.one_minus_cos))
     }
 }

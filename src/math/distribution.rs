@@ -35,11 +35,11 @@ impl Distribution {
     /// If there is no entry.
     pub fn new(weights: impl IntoIterator<Item = f64>) -> Self {
         let mut total = 0.0;
-        let running = |weight: f64| {
+        let add_to_total = |weight: f64| {
             total += weight;
             total
         };
-        let mut cumulative: Vec<f64> = weights.into_iter().map(running).collect();
+        let mut cumulative: Vec<f64> = weights.into_iter().map(add_to_total).collect();
         let count = cumulative.len();
         if total > 0.0 {
             cumulative.iter_mut().for_each(|sum| *sum /= total);
@@ -63,17 +63,17 @@ impl Distribution {
     /// Draws an entry with a random number in [0, 1).
     pub fn sample(&self, u: f64) -> DiscreteSample {
         let index = self.cumulative.partition_point(|&sum| sum <= u).min(self.count() - 1);
-        let (before, probability) = (self.before(index), self.probability(index));
+        let (before, probability) = (self.cumulative_before(index), self.probability(index));
         DiscreteSample { index, probability, u: ((u - before) / probability).clamp(0.0, BELOW_ONE) }
     }
 
     /// Returns the probability with which `sample` draws an entry.
     pub fn probability(&self, index: usize) -> f64 {
-        self.cumulative[index] - self.before(index)
+        self.cumulative[index] - self.cumulative_before(index)
     }
 
     /// Returns the probability of all entries before one.
-    fn before(&self, index: usize) -> f64 {
+    fn cumulative_before(&self, index: usize) -> f64 {
         if index == 0 { 0.0 } else { self.cumulative[index - 1] }
     }
 }
@@ -121,12 +121,12 @@ impl Distribution2d {
 
     /// Samples a point of the unit square with two random numbers. The cells divide the square into equal parts, and
     /// the density is constant within each cell.
-    pub fn sample_place(&self, u: [f64; 2]) -> [f64; 2] {
+    pub fn sample_point(&self, u: [f64; 2]) -> [f64; 2] {
         let (size, drawn) = (self.size(), self.sample(u));
         [0, 1].map(|i| ((drawn[i].index as f64 + drawn[i].u) / size[i] as f64).min(BELOW_ONE))
     }
 
-    /// Returns the density per unit area with which `sample_place` draws a point.
+    /// Returns the density per unit area with which `sample_point` draws a point.
     pub fn density(&self, place: [f64; 2]) -> f64 {
         let size = self.size();
         let cell = [0, 1].map(|i| ((place[i] * size[i] as f64) as usize).min(size[i] - 1));
@@ -173,9 +173,13 @@ mod tests {
             counts[row][column] += 1;
         }
         for (y, x) in (0..2).flat_map(|y| (0..3).map(move |x| (y, x))) {
-            let due = cell([x, y]) * row(y) / 24.0;
-            assert!((distribution.probability([x, y]) - due).abs() < 1e-15);
-            assert!((f64::from(counts[y][x]) / 57_600.0 - due).abs() < 0.01, "{x}, {y}: {} for {due}", counts[y][x]);
+            let expected = cell([x, y]) * row(y) / 24.0;
+            assert!((distribution.probability([x, y]) - expected).abs() < 1e-15);
+            assert!(
+                (f64::from(counts[y][x]) / 57_600.0 - expected).abs() < 0.01,
+                "{x}, {y}: {} for {expected}",
+                counts[y][x]
+            );
         }
     }
 }

@@ -36,7 +36,7 @@ impl Frame {
 
 /// Returns the horizontal unit vector perpendicular to `normal`, where +y is up. It points to the right for a viewer in
 /// front of the surface. Returns +x if `normal` is vertical.
-pub fn level(normal: DVec3) -> DVec3 {
+pub fn horizontal_tangent(normal: DVec3) -> DVec3 {
     DVec3::Y.cross(normal).try_normalize().unwrap_or(DVec3::X)
 }
 
@@ -59,7 +59,7 @@ mod tests {
         let anywhere = (0..100_000).map(|i| {
             // Hammersley points in the unit square.
             let u = [(f64::from(i) + 0.5) / 1e5, f64::from((i as u32).reverse_bits()) / 4_294_967_296.0];
-            crate::math::ball_surface(u)
+            crate::math::sample_sphere(u)
         });
         for normal in normals.into_iter().chain(anywhere) {
             let frame = Frame::about(normal);

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 /// 2007, *Numerical Recipes*, section 4.6.
 pub fn gauss_legendre(count: usize) -> Vec<[f64; 2]> {
     let order = count as f64;
-    let place = |i: usize| {
+    let node = |i: usize| {
         let mut x = libm::cos(PI * (i as f64 + 0.75) / (order + 0.5));
         let mut slope = 1.0;
         // Each step of Newton's method doubles the number of correct digits: the initial three soon become all.
@@ -21,7 +21,7 @@ pub fn gauss_legendre(count: usize) -> Vec<[f64; 2]> {
         }
         [0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope)]
     };
-    (0..count).map(place).collect()
+    (0..count).map(node).collect()
 }
 
 #[cfg(test)]

@@ -19,18 +19,18 @@ pub use bounds::Bounds;
 pub use complex::Complex;
 pub use cone::Cone;
 pub use distribution::{BELOW_ONE, DiscreteSample, Distribution, Distribution2d};
-pub use frame::{Frame, level};
+pub use frame::{Frame, horizontal_tangent};
 pub use gauss::gauss_legendre;
 pub use interpolate::interpolate;
 pub use median::median;
-pub use neighbors::neighbors;
+pub use neighbors::group_neighbors;
 pub use offset::{UNIT_ROUNDOFF, gamma, offset_origin};
 pub use ray::{Ray, unit};
-pub use sampler::{BranchKey, Sampler, mix, seed_of};
+pub use sampler::{BranchKey, Sampler, derive_seed, mix_bits};
 pub use transform::Transform;
 pub use warp::{
-    ball_surface, cone, cosine_about, cosine_hemisphere, disk, disk_in_square, one_minus_cos_of_cone,
-    square_around_disk, triangle_coordinates, triangle_square,
+    cone, disk_to_square, one_minus_cos_of_cone, sample_cosine_about, sample_cosine_hemisphere, sample_disk,
+    sample_sphere, sample_triangle, square_to_disk, triangle_to_square,
 };
 
 /// Points and directions are 64-bit everywhere: see the rows S1 to X7 of `tests/stability_shapes.rs`.

@@ -17,7 +17,7 @@ impl BranchKey {
 
     /// Returns the key of the `index`-th branch from here.
     pub fn child(self, index: usize) -> Self {
-        Self(mix(self.0 ^ (index as u64 + 1)))
+        Self(mix_bits(self.0 ^ (index as u64 + 1)))
     }
 }
 
@@ -39,7 +39,7 @@ impl Sampler {
     /// Creates the sampler of one sample, under a seed, of anything that is identified by two numbers.
     pub fn new(seed: u64, key: [u32; 2], sample: u32) -> Self {
         let place = (u64::from(key[1]) << 32) | u64::from(key[0]);
-        Self { pixel: mix(mix(seed) ^ place), index: sample }
+        Self { pixel: mix_bits(mix_bits(seed) ^ place), index: sample }
     }
 
     /// Returns four numbers in [0, 1) for one use (`purpose`) at one vertex.
@@ -47,14 +47,14 @@ impl Sampler {
     /// They are Owen-scrambled Sobol points in four dimensions, padded by an independent scramble and shuffle for each
     /// use.
     /// Burley 2020, *Practical Hash-based Owen Scrambling*.
-    pub fn four(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
+    pub fn get_4d(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
         let seed = self.seed(branch, purpose);
         sobol(self.index, 0, [seed; 2])
     }
 
-    /// Returns four more numbers for the same use at the same vertex. Together with those of [`four`](Self::four) they
-    /// are points in eight dimensions.
-    pub fn four_more(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
+    /// Returns four more numbers for the same use at the same vertex. Together with those of [`get_4d`](Self::get_4d)
+    /// they are points in eight dimensions.
+    pub fn get_more_4d(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
         let seed = self.seed(branch, purpose);
         sobol(self.index, 1, [seed; 2])
     }
@@ -62,28 +62,28 @@ impl Sampler {
     /// Returns two pairs of numbers in [0, 1) for one use at one vertex. Among the samples whose first two numbers for
     /// the camera's use `first` fall into the same part of the square, each pair is evenly distributed. This holds
     /// within each block of 65,536 samples. Different blocks are independent.
-    pub fn pairs_beside(&self, first: u32, branch: BranchKey, purpose: u32) -> [f64; 4] {
+    pub fn conditional_pairs(&self, first: u32, branch: BranchKey, purpose: u32) -> [f64; 4] {
         let scramble = self.seed(branch, purpose).wrapping_add((self.index >> 16).wrapping_mul(0x9e37_79b9));
-        sobol(self.index, PAIRS, [self.seed(BranchKey::CAMERA, first), scramble])
+        sobol(self.index, PAIRED_SET, [self.seed(BranchKey::CAMERA, first), scramble])
     }
 
     fn seed(&self, branch: BranchKey, purpose: u32) -> u32 {
-        (mix(self.pixel ^ branch.0.wrapping_add(u64::from(purpose))) >> 32) as u32
+        (mix_bits(self.pixel ^ branch.0.wrapping_add(u64::from(purpose))) >> 32) as u32
     }
 
     /// Returns four numbers in [0, 1) for one use at one vertex, independent from sample to sample.
-    pub fn four_plain(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
-        let sample = mix(self.pixel ^ u64::from(self.index).wrapping_mul(0xd134_2543_de82_ef95));
-        let a = mix(sample ^ branch.0.wrapping_add(u64::from(purpose)));
-        let b = mix(a);
+    pub fn get_random_4d(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
+        let sample = mix_bits(self.pixel ^ u64::from(self.index).wrapping_mul(0xd134_2543_de82_ef95));
+        let a = mix_bits(sample ^ branch.0.wrapping_add(u64::from(purpose)));
+        let b = mix_bits(a);
         let unit = |x: u64| f64::from(x as u32) * (1.0 / 4_294_967_296.0);
         [unit(a), unit(a >> 32), unit(b), unit(b >> 32)]
     }
 }
 
 /// Returns the seed of one of several statistically independent renders of the same image.
-pub fn seed_of(seed: u64, number: u64) -> u64 {
-    mix(mix(seed) ^ number.wrapping_add(1))
+pub fn derive_seed(seed: u64, number: u64) -> u64 {
+    mix_bits(mix_bits(seed) ^ number.wrapping_add(1))
 }
 
 /// Returns four dimensions of a Sobol point, shuffled by one seed and scrambled by another. In the first two sets, with
@@ -98,9 +98,9 @@ fn sobol(index: u32, set: usize, [shuffle, scramble]: [u32; 2]) -> [f64; 4] {
         std::array::from_fn(|i| (a[i] ^ b[i]) ^ (c[i] ^ d[i]))
     };
     let mut point = point_of(&SOBOL[set], shuffled);
-    if index >> 16 != 0 && set != PAIRS {
-        let beyond = point_of(&BEYOND[set], (shuffled ^ owen_scramble_rev(0, shuffle)) << 16);
-        point = std::array::from_fn(|i| point[i] ^ beyond[i]);
+    if index >> 16 != 0 && set != PAIRED_SET {
+        let upper = point_of(&SOBOL_UPPER[set], (shuffled ^ owen_scramble_rev(0, shuffle)) << 16);
+        point = std::array::from_fn(|i| point[i] ^ upper[i]);
     }
     let seed = scramble.wrapping_mul(0x9c8f_2d3b) ^ set as u32;
     let scramble = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8].map(|x: u32| x ^ seed);
@@ -108,22 +108,22 @@ fn sobol(index: u32, set: usize, [shuffle, scramble]: [u32; 2]) -> [f64; 4] {
 }
 
 /// Index of the set of four dimensions that holds the two pairs beside the first pair.
-const PAIRS: usize = 2;
+const PAIRED_SET: usize = 2;
 /// Each pair beside the first is the first pair at another index, whose digits come from these dimensions. So each is
 /// as even as the first, a (0, 2)-sequence. Of all dimensions, these leave the fewest uneven boxes in sets of 4 to 256
 /// samples: the boxes that the first pair makes with the second, then those that these two make with the third.
-const BESIDE: [u32; 2] = [156, 234];
+const PAIR_DIMENSIONS: [u32; 2] = [156, 234];
 
 /// For three sets of four dimensions, the point of each of the four hexadecimal digits of an index, with bits reversed.
 /// The sequence is linear: the point of an index is the bitwise sum of its digits' points.
 static SOBOL: LazyLock<[[[[u32; 4]; 16]; 4]; 3]> = LazyLock::new(|| {
     let point = |set: usize, i: usize, digit: usize| {
         let index = (digit as u32) << (28 - 4 * i);
-        if set != PAIRS {
+        if set != PAIRED_SET {
             return std::array::from_fn(|dimension| sobol_rev(index, (4 * set + dimension) as u32));
         }
         std::array::from_fn(|dimension| {
-            let index = sobol_rev(index, BESIDE[dimension / 2]).reverse_bits();
+            let index = sobol_rev(index, PAIR_DIMENSIONS[dimension / 2]).reverse_bits();
             sobol_rev(index, (dimension % 2) as u32)
         })
     };
@@ -132,12 +132,12 @@ static SOBOL: LazyLock<[[[[u32; 4]; 16]; 4]; 3]> = LazyLock::new(|| {
 
 /// For the first two sets of four dimensions, the points of the hexadecimal digits in the upper half of an index, with
 /// bits reversed. [`SOBOL`] has those of the lower half.
-static BEYOND: LazyLock<[[[[u32; 4]; 16]; 4]; 2]> = LazyLock::new(|| {
-    let directions: Vec<[u32; 32]> = (0..8).map(directions).collect();
+static SOBOL_UPPER: LazyLock<[[[[u32; 4]; 16]; 4]; 2]> = LazyLock::new(|| {
+    let direction_numbers: Vec<[u32; 32]> = (0..8).map(direction_numbers).collect();
     let point = |set: usize, i: usize, digit: usize| {
         std::array::from_fn(|dimension| {
-            let of_bit = |bit: usize| directions[4 * set + dimension][16 + 4 * i + bit].reverse_bits();
-            (0..4).filter(|bit| digit >> (3 - bit) & 1 == 1).fold(0, |point, bit| point ^ of_bit(bit))
+            let direction_number = |bit: usize| direction_numbers[4 * set + dimension][16 + 4 * i + bit].reverse_bits();
+            (0..4).filter(|bit| digit >> (3 - bit) & 1 == 1).fold(0, |point, bit| point ^ direction_number(bit))
         })
     };
     std::array::from_fn(|set| std::array::from_fn(|i| std::array::from_fn(|digit| point(set, i, digit))))
@@ -150,21 +150,21 @@ const POLYNOMIALS: [(usize, u32); 7] = [(1, 0), (2, 1), (3, 1), (3, 2), (4, 1), 
 
 /// Returns the direction numbers of one of the first eight dimensions, 32 bits each. `sobol_burley` has the first 16.
 /// The recurrence of the dimension's polynomial gives the others.
-fn directions(dimension: usize) -> [u32; 32] {
-    let mut directions = [0; 32];
+fn direction_numbers(dimension: usize) -> [u32; 32] {
+    let mut direction_numbers = [0; 32];
     for i in 0..32 {
-        directions[i] = match dimension.checked_sub(1).map(|dimension| POLYNOMIALS[dimension]) {
+        direction_numbers[i] = match dimension.checked_sub(1).map(|dimension| POLYNOMIALS[dimension]) {
             None => 1 << (31 - i),
             Some(_) if i < 16 => sobol_rev(1 << (31 - i), dimension as u32).reverse_bits(),
-            Some((degree, inner)) => next(&directions[..i], degree, inner),
+            Some((degree, inner)) => next_direction_number(&direction_numbers[..i], degree, inner),
         };
     }
-    directions
+    direction_numbers
 }
 
 /// Returns the direction number that follows the given ones of a dimension.
-fn next(directions: &[u32], degree: usize, inner: u32) -> u32 {
-    let before = |j: usize| directions[directions.len() - j];
+fn next_direction_number(direction_numbers: &[u32], degree: usize, inner: u32) -> u32 {
+    let before = |j: usize| direction_numbers[direction_numbers.len() - j];
     let is_in = |j: &usize| inner >> (degree - 1 - j) & 1 == 1;
     (1..degree).filter(is_in).fold(before(degree) ^ (before(degree) >> degree), |sum, j| sum ^ before(j))
 }
@@ -172,7 +172,7 @@ fn next(directions: &[u32], degree: usize, inner: u32) -> u32 {
 /// Maps 64 bits to 64 bits by a bijection that spreads every input bit over all output bits.
 ///
 /// Steele, Lea & Flood 2014, *Fast Splittable Pseudorandom Number Generators* (mix64, variant 13 of Stafford).
-pub fn mix(x: u64) -> u64 {
+pub fn mix_bits(x: u64) -> u64 {
     let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn points_are_those_of_the_plain_sequence() {
         for i in 0..20_000_u32 {
-            let (index, seed) = (i.wrapping_mul(0x9e37_79b1) >> 16, mix(u64::from(i)) as u32);
+            let (index, seed) = (i.wrapping_mul(0x9e37_79b1) >> 16, mix_bits(u64::from(i)) as u32);
             for dimensions in 0..2 {
                 let plain = sobol_burley::sample_4d(index, dimensions, seed).map(f64::from);
                 assert_eq!(sobol(index, dimensions as usize, [seed; 2]), plain, "{index} {seed}");
@@ -197,9 +197,9 @@ mod tests {
     #[test]
     fn polynomials_are_those_of_the_dimensions() {
         for dimension in 1..8 {
-            let ((degree, inner), known) = (POLYNOMIALS[dimension - 1], directions(dimension));
+            let ((degree, inner), known) = (POLYNOMIALS[dimension - 1], direction_numbers(dimension));
             for i in degree..16 {
-                assert_eq!(next(&known[..i], degree, inner), known[i], "{dimension} {i}");
+                assert_eq!(next_direction_number(&known[..i], degree, inner), known[i], "{dimension} {i}");
             }
         }
     }
@@ -210,7 +210,7 @@ mod tests {
         // The second block of this length, from 262,144 to 524,287.
         let points: Vec<[[f64; 4]; 2]> = (1 << m..2 << m)
             .map(|i| Sampler::new(3, [5, 7], i))
-            .map(|sampler| [sampler.four(BranchKey::CAMERA, 2), sampler.four_more(BranchKey::CAMERA, 2)])
+            .map(|sampler| [sampler.get_4d(BranchKey::CAMERA, 2), sampler.get_more_4d(BranchKey::CAMERA, 2)])
             .collect();
         let pairs: Vec<[f64; 2]> = points.iter().map(|[first, _]| [first[0], first[1]]).collect();
         assert_eq!(share_of_even_shapes(&pairs, m), 1.0);
@@ -236,7 +236,7 @@ mod tests {
     }
 
     /// Returns the mean number of points per box that is not empty, for 2^m points of 32 bits.
-    fn crowd<const D: usize>(points: &[[u32; D]], halved: &[u32; D]) -> f64 {
+    fn points_per_box<const D: usize>(points: &[[u32; D]], halved: &[u32; D]) -> f64 {
         let mut is_filled = vec![false; points.len()];
         for point in points {
             let digits = |axis: usize| if halved[axis] == 0 { 0 } else { point[axis] >> (32 - halved[axis]) };
@@ -248,11 +248,11 @@ mod tests {
     fn share_of_even_shapes<const D: usize>(points: &[[f64; D]], m: u32) -> f64 {
         let points: Vec<_> = points.iter().map(|point| point.map(|x| (x * 4_294_967_296.0) as u32)).collect();
         let shapes = shapes::<D>(m);
-        shapes.iter().filter(|halved| crowd(&points, halved) == 1.0).count() as f64 / shapes.len() as f64
+        shapes.iter().filter(|halved| points_per_box(&points, halved) == 1.0).count() as f64 / shapes.len() as f64
     }
 
     #[test]
-    fn pairs_beside_another_are_even_and_even_in_parts_of_its_square() {
+    fn conditional_pairs_are_even_overall_and_in_parts_of_the_first_square() {
         let key = BranchKey::CAMERA;
         for (m, start) in (2..=8_u32).flat_map(|m| [(m, 0), (m, 5 << 16)]) {
             let samples = |points: &dyn Fn(Sampler) -> [f64; 4]| {
@@ -260,19 +260,19 @@ mod tests {
             };
             let beside = |pair: usize| {
                 samples(&|sampler| {
-                    let (place, ways) = (sampler.four(key, 0), sampler.pairs_beside(0, key, 1));
+                    let (place, ways) = (sampler.get_4d(key, 0), sampler.conditional_pairs(0, key, 1));
                     [place[0], place[1], ways[2 * pair], ways[2 * pair + 1]]
                 })
             };
-            let apart = samples(&|sampler| {
-                let (place, ways) = (sampler.four(key, 0), sampler.four(key, 1));
+            let independent = samples(&|sampler| {
+                let (place, ways) = (sampler.get_4d(key, 0), sampler.get_4d(key, 1));
                 [place[0], place[1], ways[0], ways[1]]
             });
             for pair in 0..2 {
                 let points = beside(pair);
                 let ways: Vec<[f64; 2]> = points.iter().map(|point| [point[2], point[3]]).collect();
                 assert_eq!(share_of_even_shapes(&ways, m), 1.0, "{m}");
-                let [with, without] = [&points, &apart].map(|points| share_of_even_shapes(points, m));
+                let [with, without] = [&points, &independent].map(|points| share_of_even_shapes(points, m));
                 println!(
                     "2^{m} samples, pair {pair}: {with:.2} of the shapes are even; {without:.2} of independent pairs"
                 );
@@ -281,7 +281,7 @@ mod tests {
         }
     }
 
-    /// The search that found [`BESIDE`].
+    /// The search that found [`PAIR_DIMENSIONS`].
     #[test]
     fn no_other_dimensions_leave_fewer_boxes_uneven() {
         let pair = |index: u32| [0, 1].map(|dimension| sobol_rev(index.reverse_bits(), dimension).reverse_bits());
@@ -292,7 +292,7 @@ mod tests {
             0.5_f64.powi((a.abs_diff(b).max(1) - 1) as i32 + (c.abs_diff(d).max(1) - 1) as i32)
         };
         let uneven = |first: u32, second: u32| -> f64 {
-            let of_count = |shapes: &Vec<[u32; 4]>| {
+            let unevenness = |shapes: &Vec<[u32; 4]>| {
                 let m = shapes[0].iter().sum::<u32>();
                 let points: Vec<_> = (0..1 << m)
                     .map(|index| {
@@ -300,15 +300,17 @@ mod tests {
                         [a, b, c, d]
                     })
                     .collect();
-                let sum: f64 = shapes.iter().map(|halved| weight(*halved) * (crowd(&points, halved) - 1.0)).sum();
+                let sum: f64 =
+                    shapes.iter().map(|halved| weight(*halved) * (points_per_box(&points, halved) - 1.0)).sum();
                 sum / shapes.iter().map(|halved| weight(*halved)).sum::<f64>()
             };
-            shapes.iter().map(of_count).sum()
+            shapes.iter().map(unevenness).sum()
         };
-        let least = |of: &dyn Fn(u32) -> f64| (2..256).min_by(|a, b| of(*a).total_cmp(&of(*b))).expect("dimensions");
+        let best_dimension =
+            |of: &dyn Fn(u32) -> f64| (2..256).min_by(|a, b| of(*a).total_cmp(&of(*b))).expect("dimensions");
         let beside: Vec<f64> = (0..256).map(|dimension| uneven(0, dimension.max(1))).collect();
-        let first = least(&|dimension| beside[dimension as usize]);
+        let first = best_dimension(&|dimension| beside[dimension as usize]);
         let both: Vec<f64> = (0..256).map(|i| beside[i as usize] + uneven(first, i.max(1))).collect();
-        assert_eq!([first, least(&|dimension| both[dimension as usize])], BESIDE);
+        assert_eq!([first, best_dimension(&|dimension| both[dimension as usize])], PAIR_DIMENSIONS);
     }
 }

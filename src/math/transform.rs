@@ -91,7 +91,7 @@ impl Transform {
     /// |t|).
     ///
     /// The three products, their two sums and the translation chain up to 4 roundings.
-    pub fn rounding(&self, reach: DVec3) -> DVec3 {
+    pub fn rounding_error(&self, reach: DVec3) -> DVec3 {
         (self.magnitudes() * reach + self.translation.abs()) * super::gamma(4)
     }
 
@@ -99,7 +99,7 @@ impl Transform {
     ///
     /// With M and t for this map, N and s for `back`, it adds the deviation of the computed product from the identity
     /// and the roundings in computing it: gamma(4) (|N| |M| + 1) and gamma(5) (|N| |t| + |s|).
-    pub fn mismatch(&self, back: &Self, reach: DVec3) -> DVec3 {
+    pub fn round_trip_error(&self, back: &Self, reach: DVec3) -> DVec3 {
         let both = self.then(back);
         let left = (both.linear - DMat3::IDENTITY).abs();
         let rounded = back.magnitudes() * (self.magnitudes() * reach) + reach;
@@ -108,7 +108,7 @@ impl Transform {
     }
 
     /// Multiplies a vector by the transposed linear part, which maps normals of the image back to the original.
-    pub fn transposed(&self, v: DVec3) -> DVec3 {
+    pub fn mul_transposed(&self, v: DVec3) -> DVec3 {
         self.linear.transpose() * v
     }
 
@@ -130,14 +130,14 @@ impl Transform {
     }
 
     /// Returns whether the map turns left hands into right hands.
-    pub fn mirrors(&self) -> bool {
+    pub fn swaps_handedness(&self) -> bool {
         (self.linear / power_of_two(self.size())).determinant() < 0.0
     }
 
     /// Returns the corners of a triangle in the order that keeps its front in front, because a mirror image has the
     /// opposite winding.
-    pub fn wound<T>(&self, [a, b, c]: [T; 3]) -> [T; 3] {
-        if self.mirrors() { [a, c, b] } else { [a, b, c] }
+    pub fn fix_winding<T>(&self, [a, b, c]: [T; 3]) -> [T; 3] {
+        if self.swaps_handedness() { [a, c, b] } else { [a, b, c] }
     }
 
     /// Returns whether every plane stays a plane: the map is finite and flattens nothing.
@@ -180,16 +180,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn maps_that_flatten_to_nearly_nothing_keep_normals_and_know_that_they_mirror() {
+    fn maps_that_flatten_to_nearly_nothing_keep_normals_and_handedness() {
         for flat in [1.0, 1e-70, 1e-90, 1e-150] {
             let map = Transform::scale(DVec3::new(flat, -flat, 1.0)).then(&Transform::scale(DVec3::splat(1e-20)));
             assert!(map.is_invertible());
-            assert_eq!((map.normal(DVec3::Z), map.mirrors()), (DVec3::Z, true), "{flat}");
+            assert_eq!((map.normal(DVec3::Z), map.swaps_handedness()), (DVec3::Z, true), "{flat}");
         }
     }
 
     #[test]
-    fn maps_that_shrink_to_nearly_nothing_are_taken_back() {
+    fn maps_that_shrink_to_nearly_nothing_are_inverted() {
         let [small, large] = [-400.0, 400.0].map(|exponent| DVec3::splat(libm::exp2(exponent)));
         assert_eq!(Transform::scale(small).inverse_linear(), DMat3::from_diagonal(large));
     }

@@ -2,7 +2,7 @@
 
 use super::dyes;
 use super::seen::Seen;
-use super::survey::{Survey, Tint, lanes, missed, strongest};
+use super::survey::{Survey, Tint, lanes, max_channel, max_channel_error};
 use crate::spectrum::{Basis, Draw, Emission, MAX_LANES, Quantity, Upsampler, WavelengthBands};
 
 /// A spectral model, with the largest color error that it is predicted to make.
@@ -24,31 +24,31 @@ impl Candidate {
 }
 
 /// Most diffuse and smooth colors that are combined; of more, those farthest from gray.
-const MOST: [usize; 2] = [20, 6];
+const MAX_COLORS: [usize; 2] = [20, 6];
 
 /// Returns the largest relative color error of a basis in a scene: over its lights and all pairs of surfaces, and over
 /// what the light of a probe hits, however many smooth surfaces that is.
 pub(super) fn error(survey: &Survey, seen: &Seen, basis: &Basis) -> f64 {
-    let scattered = error_of_paths(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1]));
+    let scattered = error_of_paths(survey, basis, &survey.scattering(MAX_COLORS[0]), &survey.smooth(MAX_COLORS[1]));
     scattered.max(seen.error(survey, basis)).max(dyes::error(survey, basis))
 }
 
 /// Returns the largest relative color error over paths of chosen tints.
 fn error_of_paths(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]) -> f64 {
     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
-    let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.on(basis)).collect::<Vec<_>>();
-    let films = films_of(smooth);
-    let in_lanes = paths(&read(scattering), &read(smooth), &films);
+    let evaluate = |tints: &[&Tint]| tints.iter().map(|tint| tint.in_basis(basis)).collect::<Vec<_>>();
+    let films = film_crossings(smooth);
+    let in_lanes = paths(&evaluate(scattering), &evaluate(smooth), &films);
     let mut worst: f64 = 0.0;
-    for (curve, light) in survey.judged() {
+    for (curve, light) in survey.reference_lights() {
         let exact = exact_colors(light, scattering, smooth, &survey.upsampler);
         let (table, response) = (basis.tabulate(Quantity::Emission, curve), basis.response(curve));
         let emission = draw.read(&table);
         for (exact, left) in exact.iter().zip(&in_lanes) {
-            let found = response.sensor(&draw, emission * lanes(left), false);
-            let scale = strongest(*exact);
+            let found = response.film_rgb(&draw, emission * lanes(left), false);
+            let scale = max_channel(*exact);
             if scale > 0.0 {
-                worst = worst.max(missed(found, *exact) / scale);
+                worst = worst.max(max_channel_error(found, *exact) / scale);
             }
         }
     }
@@ -58,10 +58,10 @@ fn error_of_paths(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: 
 /// Returns the film colors of all paths, from sums over 1 nm.
 fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], upsampler: &Upsampler) -> Vec<[f64; 3]> {
     let colors = light.film_colors();
-    let read =
+    let evaluate =
         |tints: &[&Tint]| tints.iter().map(|tint| tint.at(&colors.wavelengths_nm, upsampler)).collect::<Vec<_>>();
-    let films = films_of(smooth);
-    paths(&read(scattering), &read(smooth), &films).iter().map(|path| colors.color(path)).collect()
+    let films = film_crossings(smooth);
+    paths(&evaluate(scattering), &evaluate(smooth), &films).iter().map(|path| colors.color(path)).collect()
 }
 
 /// Returns what is left of light on all paths: every surface i, lit directly and via every surface j, q = r_i (1 + r_j
@@ -77,8 +77,8 @@ fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>], films: &[bool]) -> Vec<Ve
     let mut paths = Vec::new();
     for first in scattering {
         for second in scattering {
-            let lit = |i: usize| first[i] * (1.0 + second[i] / (1.0 - mean[i].min(BRIGHTEST)));
-            let path: Vec<f64> = (0..length).map(lit).collect();
+            let path_value = |i: usize| first[i] * (1.0 + second[i] / (1.0 - mean[i].min(MAX_MEAN_REFLECTANCE)));
+            let path: Vec<f64> = (0..length).map(path_value).collect();
             paths.extend(smooth.iter().map(|filter| product(filter, &path)));
             paths.push(path);
         }
@@ -96,23 +96,23 @@ fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>], films: &[bool]) -> Vec<Ve
 }
 
 /// For each of the first tints, those in which light interferes, tells whether light crosses it.
-fn films_of(smooth: &[&Tint]) -> Vec<bool> {
+fn film_crossings(smooth: &[&Tint]) -> Vec<bool> {
     let is_crossed = |tint: &&Tint| matches!(tint, Tint::Film(film) if film.crosses);
     smooth.iter().take_while(|tint| tint.has_fringes()).map(is_crossed).collect()
 }
 
 /// Largest mean reflectance of a closed room; a larger one is clamped.
-const BRIGHTEST: f64 = 0.95;
+const MAX_MEAN_REFLECTANCE: f64 = 0.95;
 
 /// Returns the models that could render a scene, from few lanes to many, each with its predicted error.
 pub(super) fn candidates(survey: &Survey, seen: &Seen, heroes: usize) -> Vec<Candidate> {
     let space = survey.color_space;
     let candidate = |basis: Basis, safety: f64| Candidate { error: error(survey, seen, &basis), basis, safety };
     let mut candidates = Vec::new();
-    if survey.is_plain() {
+    if survey.is_rgb_only() {
         // Colors of three numbers have no error; only what glass reflects is measured.
         let basis = Basis::rgb(space);
-        let error = error_of_paths(survey, &basis, &[], &survey.surfaces(MOST[1]));
+        let error = error_of_paths(survey, &basis, &[], &survey.surfaces(MAX_COLORS[1]));
         candidates.push(Candidate { basis, error, safety: PREFILTERED_SAFETY });
         if heroes == 0 && error == 0.0 {
             return candidates;
@@ -120,31 +120,36 @@ pub(super) fn candidates(survey: &Survey, seen: &Seen, heroes: usize) -> Vec<Can
     } else if let (Some(light), false) = (survey.common_light(), survey.has_fringes() || !survey.dyes.is_empty()) {
         candidates.push(candidate(Basis::prefiltered(space, &light), PREFILTERED_SAFETY));
     }
-    candidates.extend([8, 12, 16, 32].map(|bands| candidate(bands_beside(survey, bands, heroes), LANES_SAFETY)));
+    candidates.extend([8, 12, 16, 32].map(|bands| candidate(fixed_bands(survey, bands, heroes), LANES_SAFETY)));
     candidates
 }
 
 /// Returns the emission lines that have lanes of their own beside heroes.
-pub(super) fn own_lines(survey: &Survey, heroes: usize) -> Vec<f64> {
-    survey.lines(MAX_LANES - heroes - FEWEST)
+pub(super) fn lines_with_lane(survey: &Survey, heroes: usize) -> Vec<f64> {
+    survey.lines(MAX_LANES - heroes - MIN_BANDS)
 }
 
 /// Returns fixed lanes that leave room for heroes: the scene's emission lines, and as many wavelengths as fit.
-pub(super) fn bands_beside(survey: &Survey, bands: usize, heroes: usize) -> Basis {
-    bands_showing(survey, bands, heroes, None)
+pub(super) fn fixed_bands(survey: &Survey, bands: usize, heroes: usize) -> Basis {
+    bands_covering(survey, bands, heroes, None)
 }
 
 /// Returns fixed lanes beside heroes and emission lines, spread over all bands of a spectral image if there are any:
 /// beyond the first and last lane, spectra of surfaces are taken as constant.
-pub(super) fn bands_showing(survey: &Survey, bands: usize, heroes: usize, shown: Option<&WavelengthBands>) -> Basis {
-    let lines = own_lines(survey, heroes);
+pub(super) fn bands_covering(
+    survey: &Survey,
+    bands: usize,
+    heroes: usize,
+    output_bands: Option<&WavelengthBands>,
+) -> Basis {
+    let lines = lines_with_lane(survey, heroes);
     let bands = bands.min(MAX_LANES - heroes - lines.len());
     let space = survey.color_space;
     let [from, to] = match survey.needs_ultraviolet() {
         true => Basis::FROM_ULTRAVIOLET_NM,
         false => Basis::best_range_nm(bands),
     };
-    let basis = match shown.map(WavelengthBands::range_nm) {
+    let basis = match output_bands.map(WavelengthBands::range_nm) {
         None => Basis::bands_over(space, bands, [from, to], &lines),
         // Lanes lie at both ends: with lanes half a step inside, an edge at 380 nm was off by 0.15.
         Some([first, last]) => {
@@ -153,11 +158,11 @@ pub(super) fn bands_showing(survey: &Survey, bands: usize, heroes: usize, shown:
             Basis::wavelengths(space, (0..bands).map(|i| from + i as f64 * step).collect(), &lines)
         }
     };
-    let (lights, dyes) = survey.shining();
-    basis.seen_under(&lights, &dyes, shown)
+    let (lights, dyes) = survey.emitters();
+    basis.with_true_colors_under(&lights, &dyes, output_bands)
 }
 
 /// Fewest interpolated wavelengths beside the lanes of emission lines.
-const FEWEST: usize = 8;
+const MIN_BANDS: usize = 8;
 pub(super) const LANES_SAFETY: f64 = 1.5;
 const PREFILTERED_SAFETY: f64 = 1.9;

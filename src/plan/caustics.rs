@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::efficiency::{OfferedPhotons, PhotonGain, rounded};
-use super::words::{as_long, in_number};
+use super::words::{describe_effort, format_count};
 use crate::light::{Light, LightId, Opening};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, median};
@@ -14,30 +14,30 @@ use crate::trace::{
 };
 
 /// Solid angle in steradians of a lamp that rays hit so often that photons cost the same (`benches/rooms.rs`).
-const SMALL: f64 = 0.5;
+const MAX_SOLID_ANGLE: f64 = 0.5;
 /// Fewest photons of a light pass: with fewer, it does not learn where to send them.
-const FEWEST: f64 = 65_536.0;
+const MIN_PHOTONS: f64 = 65_536.0;
 /// Fewest and most photons per camera sample: a number outside of this range is badly measured.
-const FEWEST_OF_A_SAMPLE: f64 = 1.0 / 16.0;
-const MOST_OF_A_SAMPLE: f64 = 4.0;
+const MIN_PHOTONS_PER_SAMPLE: f64 = 1.0 / 16.0;
+const MAX_PHOTONS_PER_SAMPLE: f64 = 4.0;
 /// A gain within this of 1 tells nothing about what is seen through glass: photons contribute nothing besides the rest.
-const NOTHING: f64 = 0.01;
+const NEGLIGIBLE_GAIN: f64 = 0.01;
 /// Pairs of a light and a place whose solid angles are computed.
-const PAIRS: usize = 1 << 19;
+const MAX_PAIRS: usize = 1 << 19;
 /// Camera rays along each side of the image that look for surfaces on which caustics may lie.
-const SIDE: u32 = 24;
+const RAYS_PER_SIDE: u32 = 24;
 
 /// Whether photons show caustics to the camera.
 pub(super) struct CausticChoice {
     pub(super) caustics: Option<Box<Caustics>>,
     pub(super) why: Vec<String>,
     /// Whether photons are not gathered either, since they do not pay where the camera would see them.
-    pub(super) settled: bool,
+    pub(super) no_map: bool,
 }
 
 impl CausticChoice {
-    fn not(why: Vec<String>, settled: bool) -> Self {
-        Self { caustics: None, why, settled }
+    fn none(why: Vec<String>, no_map: bool) -> Self {
+        Self { caustics: None, why, no_map }
     }
 }
 
@@ -59,14 +59,14 @@ pub(super) struct Caustics {
 }
 
 impl Caustics {
-    /// Returns the light pass with `of_a_sample` photons for each camera sample.
-    pub(super) fn pass(&self, world: &World, of_a_sample: f64) -> LightPass {
+    /// Returns the light pass with `per_sample` photons for each camera sample.
+    pub(super) fn pass(&self, world: &World, per_sample: f64) -> LightPass {
         let mut lights: Vec<LightId> = self.photons.iter().flat_map(|photons| photons.lights.clone()).collect();
         lights.sort_unstable();
         lights.dedup();
-        let of_a_sample = rounded(of_a_sample.clamp(FEWEST_OF_A_SAMPLE, MOST_OF_A_SAMPLE));
+        let per_sample = rounded(per_sample.clamp(MIN_PHOTONS_PER_SAMPLE, MAX_PHOTONS_PER_SAMPLE));
         LightPass {
-            photons: (of_a_sample * world.samples_of_the_format()).max(FEWEST).ceil() as u64,
+            photons: (per_sample * world.samples_of_the_format()).max(MIN_PHOTONS).ceil() as u64,
             lights,
             openings: self.openings.clone(),
             to: self.smooth.clone(),
@@ -78,11 +78,11 @@ impl Caustics {
     pub(super) fn reason(&self, world: &World) -> Option<String> {
         let Self { from, to, seen, gain, .. } = self;
         let (method, photons) = (world.method(), world.method().light_pass.as_ref()?.photons);
-        let all = if method.stop.is_none() { format!("{} ", in_number(photons)) } else { String::new() };
-        let without = gain.map_or(String::new(), |gain| format!("; without them, {}", as_long(gain)));
+        let all = if method.stop.is_none() { format!("{} ", format_count(photons)) } else { String::new() };
+        let slowdown = gain.map_or(String::new(), |gain| format!("; without them, {}", describe_effort(gain)));
         Some(format!(
             "photon tracing: {all}photons from {from} toward {to}, {:.2} for each camera sample; {} of them are \
-             seen{without}",
+             seen{slowdown}",
             photons as f64 / world.samples_of_the_format(),
             if *seen < 0.095 { format!("{:.1} %", 100.0 * seen) } else { format!("{:.0} %", 100.0 * seen) },
         ))
@@ -112,26 +112,26 @@ impl<'a> SeenPhotons<'a> {
     /// Returns the photons of a scene that the camera sees, or why there are none.
     pub(super) fn new(scene: &'a Scene<Curve>, unguided: &World) -> Result<Self, CausticChoice> {
         let Sources { small, large, openings } = sources(scene, unguided)
-            .map_err(|why| CausticChoice::not(why.into_iter().collect(), !lit_places(scene).is_empty()))?;
-        let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
+            .map_err(|why| CausticChoice::none(why.into_iter().collect(), !visible_receivers(scene).is_empty()))?;
+        let photon_count = unguided.samples_of_the_format().max(MIN_PHOTONS).ceil() as u64;
         let lights = small.iter().map(|light| light.0).collect();
         let all = Smoothness::ALL.to_vec();
-        let pass = LightPass { photons: of_all, lights, openings: openings.clone(), to: all, map: None };
+        let pass = LightPass { photons: photon_count, lights, openings: openings.clone(), to: all, map: None };
         let guided = piloted(unguided, pass);
         if let Some(why) = nowhere_to_aim(scene, &guided) {
-            return Err(CausticChoice::not(vec![why], true));
+            return Err(CausticChoice::none(vec![why], true));
         }
         let share = seen_photons(&guided);
         let sizes = small.clone();
         let size = |light: LightId| sizes.iter().find(|(id, _)| *id == light).map_or(0.0, |&(_, size)| size);
         let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
-        let to = aim(scene, &Smoothness::ALL);
+        let to = describe_targets(scene, &Smoothness::ALL);
         let unseen = (!unseen.is_empty()).then(|| {
             let from = named(scene, &unseen);
             format!("no caustic from {from} in sight: of thousands of photons toward {to}, none was seen")
         });
         if seen.is_empty() {
-            return Err(CausticChoice::not(unseen.into_iter().collect(), false));
+            return Err(CausticChoice::none(unseen.into_iter().collect(), false));
         }
         let offered = OfferedPhotons::new(scene, &guided, size);
         Ok(Self { scene, guided, offered, seen, share, large, openings, to, unseen })
@@ -140,16 +140,16 @@ impl<'a> SeenPhotons<'a> {
     /// Chooses the photons that are worth their time, given the noise of camera samples, and tells why.
     pub(super) fn choose(&self, noise: &PilotNoise) -> CausticChoice {
         let Self { scene, to, .. } = self;
-        let PhotonGain { mut photons, gain, of_smooth } = self.offered.weigh(noise);
+        let PhotonGain { mut photons, gain, to_smooth } = self.offered.weigh(noise);
         photons.retain(|photons| self.seen.iter().any(|(id, _)| photons.lights.contains(id)));
-        let is_sent = |&(id, _): &SizedLight| photons.iter().any(|photons| photons.lights.contains(&id));
-        let (sending, left): (Vec<_>, Vec<_>) = self.seen.iter().partition(|&light| is_sent(light));
+        let sends_photons = |&(id, _): &SizedLight| photons.iter().any(|photons| photons.lights.contains(&id));
+        let (sending, left): (Vec<_>, Vec<_>) = self.seen.iter().partition(|&light| sends_photons(light));
         let large: Vec<_> = self.large.iter().copied().chain(left).collect();
         let mut lines: Vec<String> = self.unseen.iter().cloned().collect();
         if sending.is_empty() {
-            let (from, why) = (named(scene, &large), not_worth(gain));
+            let (from, why) = (named(scene, &large), why_not_worth(gain));
             lines.push(format!("no photon tracing: photons from {from} toward {to} are seen, but {why}"));
-            return CausticChoice::not(lines, gain.is_none_or(|gain| of_smooth && !gain.is_equal(NOTHING)));
+            return CausticChoice::none(lines, gain.is_none_or(|gain| to_smooth && !gain.is_equal(NEGLIGIBLE_GAIN)));
         }
         if !large.is_empty() {
             lines.push(format!("left to chance: caustics from {}", named(scene, &large)));
@@ -161,20 +161,20 @@ impl<'a> SeenPhotons<'a> {
         lines.extend(left.filter_map(|left| {
             let name = &scene.objects[*targets(scene, &[left]).first()?].name;
             let (how, points) = match left {
-                Smoothness::Whole => ("smooth", missing(scene)),
-                Smoothness::Partial => ("smooth only in part", missing(scene)),
+                Smoothness::Whole => ("smooth", point_light_note(scene)),
+                Smoothness::Partial => ("smooth only in part", point_light_note(scene)),
                 Smoothness::Narrow | Smoothness::NarrowPartial => ("nearly smooth", ""),
             };
             Some(format!("left to chance: caustics of {name}, which is {how}{points}"))
         }));
-        let (from, to, openings) = (named(scene, &sending), aim(scene, &smooth), self.openings.clone());
+        let (from, to, openings) = (named(scene, &sending), describe_targets(scene, &smooth), self.openings.clone());
         let caustics = Box::new(Caustics { photons, openings, smooth, from, to, seen, gain });
-        CausticChoice { caustics: Some(caustics), why: lines, settled: false }
+        CausticChoice { caustics: Some(caustics), why: lines, no_map: false }
     }
 }
 
 /// Describes what photons are sent to.
-fn aim(scene: &Scene<Curve>, smooth: &[Smoothness]) -> String {
+fn describe_targets(scene: &Scene<Curve>, smooth: &[Smoothness]) -> String {
     match targets(scene, smooth).as_slice() {
         [one] => scene.objects[*one].name.clone(),
         many => format!("{} smooth objects", many.len()),
@@ -183,30 +183,30 @@ fn aim(scene: &Scene<Curve>, smooth: &[Smoothness]) -> String {
 
 /// Explains why the photons of a world are sent nowhere, if that is so.
 fn nowhere_to_aim(scene: &Scene<Curve>, world: &World) -> Option<String> {
-    let has_end = |&object: &usize| scene.objects[object].shape.is_bounded();
+    let has_bounds = |&object: &usize| scene.objects[object].shape.is_bounded();
     let targets = targets(scene, &Smoothness::ALL);
     let name = &scene.objects[*targets.first()?].name;
-    (!world.reaches_without_end() && !targets.iter().any(has_end)).then(|| {
+    (!world.reaches_without_end() && !targets.iter().any(has_bounds)).then(|| {
         let why = format!("{name} is unbounded and not seen, so photons cannot be aimed at it");
-        format!("no photon tracing: {why}{}", missing(scene))
+        format!("no photon tracing: {why}{}", point_light_note(scene))
     })
 }
 
 /// Describes the caustics of unbounded surfaces that the photons of a world leave to chance.
-pub(super) fn without_end(scene: &Scene<Curve>, world: &World) -> Option<String> {
+pub(super) fn describe_unbounded(scene: &Scene<Curve>, world: &World) -> Option<String> {
     let pass = world.method().light_pass.as_ref()?;
-    let endless = targets(scene, &pass.to).into_iter().find(|&object| !scene.objects[object].shape.is_bounded())?;
+    let unbounded = targets(scene, &pass.to).into_iter().find(|&object| !scene.objects[object].shape.is_bounded())?;
     let where_left = if world.reaches_without_end() { ", far beyond where it is seen" } else { " and is not seen" };
-    let name = &scene.objects[endless].name;
-    Some(format!("left to chance: caustics of {name}, which is unbounded{where_left}{}", missing(scene)))
+    let name = &scene.objects[unbounded].name;
+    Some(format!("left to chance: caustics of {name}, which is unbounded{where_left}{}", point_light_note(scene)))
 }
 
 /// Explains why photons that are seen are not sent: how long an equal error would take with them, or nothing is lit.
-fn not_worth(gain: Option<Effort>) -> String {
+fn why_not_worth(gain: Option<Effort>) -> String {
     let Some(gain) = gain else { return "the surfaces they land on are black".into() };
     let is_small = gain.judged() > 1.0 && gain.of_whole.is_none_or(|of_whole| of_whole > 1.0);
     let small = if is_small { ", which is too small a gain to be sure of" } else { "" };
-    format!("with them, {}{small}", as_long(gain.inverse()))
+    format!("with them, {}{small}", describe_effort(gain.inverse()))
 }
 
 /// A light and the solid angle under which at least half of some places see it.
@@ -221,19 +221,19 @@ pub(super) struct Sources {
 }
 
 impl Sources {
-    /// Returns the sampled lights of a world; small ones can send photons and are seen under less than `below`.
-    pub(super) fn new(world: &World, places: &[DVec3], below: f64) -> Self {
+    /// Returns the sampled lights of a world; small ones can send photons and are seen under less than `max_size`.
+    pub(super) fn new(world: &World, places: &[DVec3], max_size: f64) -> Self {
         let lights = &world.scene().lights;
         // Use only some of the places, so that all pairs with lights can be computed.
-        let step = places.len() * lights.len() / PAIRS + 1;
+        let step = places.len() * lights.len() / MAX_PAIRS + 1;
         let places: Vec<DVec3> = places.iter().copied().step_by(step).collect();
         let openings = world.openings();
-        let are_small = of_openings(&openings, &places).is_some_and(|size| size < below);
+        let are_small = openings_solid_angle(&openings, &places).is_some_and(|size| size < max_size);
         let openings = if are_small { openings } else { Vec::new() };
         let mut sources = Self { small: Vec::new(), large: Vec::new(), openings };
         for (id, light) in lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
             match solid_angle(light, &sources.openings, &places) {
-                Some(size) if size < below && light.sends_photons_with(&sources.openings) => {
+                Some(size) if size < max_size && light.sends_photons_with(&sources.openings) => {
                     sources.small.push((id, size));
                 }
                 Some(size) => sources.large.push((id, size)),
@@ -253,14 +253,14 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
         return Err(None);
     }
     if scene.render.caustics == AutoText::Off {
-        return Err(Some(format!("caustics \"off\": no photon tracing{}", missing(scene))));
+        return Err(Some(format!("caustics \"off\": no photon tracing{}", point_light_note(scene))));
     }
-    let places = lit_places(scene);
+    let places = visible_receivers(scene);
     if places.is_empty() {
         let why = "the camera sees no diffuse or rough surface except through glass or in mirrors, where caustics";
-        return Err(Some(format!("no photon tracing: {why} are left to chance{}", missing(scene))));
+        return Err(Some(format!("no photon tracing: {why} are left to chance{}", point_light_note(scene))));
     }
-    let sources = Sources::new(world, &places, SMALL);
+    let sources = Sources::new(world, &places, MAX_SOLID_ANGLE);
     if sources.small.is_empty() {
         let why = match sources.large.as_slice() {
             [] if scene.lights.iter().any(|light| light.polarization().is_some() && !light.is_even_sky()) => {
@@ -298,40 +298,40 @@ fn may_receive(scene: &Scene<Curve>, material: &Material<Curve>) -> bool {
 }
 
 /// Returns the solid angle under which all openings together are seen from at least half of some places.
-fn of_openings(openings: &[Opening], places: &[DVec3]) -> Option<f64> {
+fn openings_solid_angle(openings: &[Opening], places: &[DVec3]) -> Option<f64> {
     let from = |place: &DVec3| openings.iter().map(|opening| opening.solid_angle_from(*place)).sum();
     median(places.iter().map(from).collect()).filter(|_| !openings.is_empty())
 }
 
 /// Describes what cannot be hit by chance at all.
-fn missing(scene: &Scene<Curve>) -> &'static str {
+fn point_light_note(scene: &Scene<Curve>) -> &'static str {
     if scene.lights.iter().all(Light::is_extended) { "" } else { "; caustics from point lights are left out" }
 }
 
 /// Describes which light of points is left out that smooth surfaces cast on surfaces called `lit`, diffuse or rough.
-pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -> Vec<String> {
+pub(super) fn left_out_point_light(scene: &Scene<Curve>, method: &Method, lit: &str) -> Vec<String> {
     let smooth = || (0..scene.objects.len()).filter(|&object| scene.material_of(object as u32).is_smooth_somewhere());
-    let line = |ways: &str, object: usize, but: &str| {
+    let line = |surfaces: &str, object: usize, suffix: &str| {
         let name = &scene.materials[scene.objects[object].material as usize].name;
-        format!("left out: light from point lights that reaches {lit} surfaces via {ways} ({name}){but}")
+        format!("left out: light from point lights that reaches {lit} surfaces via {surfaces} ({name}){suffix}")
     };
-    let sent_on = if method.light_vertices { "; some of it is found at light vertices" } else { "" };
+    let vertex_note = if method.light_vertices { "; some of it is found at light vertices" } else { "" };
     let Some(pass) = &method.light_pass else {
-        return smooth().next().map(|object| line("smooth ones", object, sent_on)).into_iter().collect();
+        return smooth().next().map(|object| line("smooth ones", object, vertex_note)).into_iter().collect();
     };
     let unseen = ", seen in a mirror, through glass or via another surface";
-    let of_aimed = smooth().find(|&object| Smoothness::sent_to(scene, object, &pass.to).is_some());
-    let of_aimed = of_aimed.filter(|_| pass.map.is_none()).map(|object| line("smooth ones", object, unseen));
-    let of_left = |smooth: Smoothness, ways: &str| {
+    let aimed = smooth().find(|&object| Smoothness::sent_to(scene, object, &pass.to).is_some());
+    let aimed = aimed.filter(|_| pass.map.is_none()).map(|object| line("smooth ones", object, unseen));
+    let unaimed = |smooth: Smoothness, surfaces: &str| {
         let left = targets(scene, &[smooth]).into_iter().find(|_| !pass.to.contains(&smooth))?;
-        Some(line(ways, left, sent_on))
+        Some(line(surfaces, left, vertex_note))
     };
-    let of_left = [
-        of_left(Smoothness::Whole, "smooth ones"),
-        of_left(Smoothness::Partial, "surfaces that are smooth only in part"),
+    let unaimed = [
+        unaimed(Smoothness::Whole, "smooth ones"),
+        unaimed(Smoothness::Partial, "surfaces that are smooth only in part"),
     ];
-    let of_left = of_left.into_iter().flatten();
-    of_aimed.into_iter().chain(of_left).collect()
+    let unaimed = unaimed.into_iter().flatten();
+    aimed.into_iter().chain(unaimed).collect()
 }
 
 /// Names lights, with the solid angle under which their bright parts are seen.
@@ -342,7 +342,7 @@ fn named(scene: &Scene<Curve>, lights: &[SizedLight]) -> String {
             Light::Point(_) => "a point light".into(),
             Light::Spot(_) => "a spotlight".into(),
             Light::Sun(_) => "the sun".into(),
-            Light::Environment(environment) if environment.bright().is_none() => "the sky through openings".into(),
+            Light::Environment(environment) if environment.bright_part().is_none() => "the sky through openings".into(),
             Light::Environment(_) => "the bright parts of the image of the sky".into(),
         };
         if size > 0.0 { format!("{name} (solid angle {size:.1e} sr)") } else { name }
@@ -355,18 +355,18 @@ fn named(scene: &Scene<Curve>, lights: &[SizedLight]) -> String {
 }
 
 /// Returns points that the camera sees on surfaces that may show caustics; the same for any part of the image.
-fn lit_places(scene: &Scene<Curve>) -> Vec<DVec3> {
+fn visible_receivers(scene: &Scene<Curve>) -> Vec<DVec3> {
     let film = scene.film;
-    let at = |i: u32, size: u32| (f64::from(i) + 0.5) * f64::from(size) / f64::from(SIDE);
-    let rays =
-        (0..SIDE * SIDE).map(|i| scene.camera.ray(DVec2::new(at(i % SIDE, film.width), at(i / SIDE, film.height))));
+    let at = |i: u32, size: u32| (f64::from(i) + 0.5) * f64::from(size) / f64::from(RAYS_PER_SIDE);
+    let rays = (0..RAYS_PER_SIDE * RAYS_PER_SIDE)
+        .map(|i| scene.camera.ray(DVec2::new(at(i % RAYS_PER_SIDE, film.width), at(i / RAYS_PER_SIDE, film.height))));
     let place = |ray| {
         // What is seen through a pane is lit as well.
-        let counts = |object| {
+        let stops_ray = |object| {
             let material = scene.material_of(object);
             scene.is_seen(object) && (may_receive(scene, material) || !material.is_see_through())
         };
-        let hit = scene.nearest(&ray, f64::INFINITY, &counts)?;
+        let hit = scene.nearest(&ray, f64::INFINITY, &stops_ray)?;
         may_receive(scene, scene.material_of(hit.object)).then(|| ray.at(hit.intersection.t))
     };
     rays.filter_map(place).collect()
@@ -379,8 +379,8 @@ fn solid_angle<S>(light: &Light<S>, openings: &[Opening], places: &[DVec3]) -> O
         Light::Point(_) | Light::Spot(_) => Some(0.0),
         Light::Sun(sun) => Some(sun.solid_angle()),
         Light::Environment(environment) => {
-            let bright = environment.bright().map(|bright| bright.solid_angle);
-            bright.or_else(|| of_openings(openings, places).filter(|_| light.sends_photons_through_openings()))
+            let bright = environment.bright_part().map(|bright| bright.solid_angle);
+            bright.or_else(|| openings_solid_angle(openings, places).filter(|_| light.sends_photons_through_openings()))
         }
         Light::Area(area) => {
             let (ball, size) = area.visible_part()?;

@@ -3,11 +3,11 @@
 use crate::light::{Light, LightId, Point, Spot};
 use crate::math::DVec3;
 use crate::scene::Scene;
-use crate::spectrum::{Curve, Distinct, Emission, apply};
+use crate::spectrum::{Curve, CurveCache, Emission, apply};
 use crate::trace::{Effort, PhotonWorth, PilotNoise, Smoothness, World, photons_worth};
 
 /// Share of a lamp's radiance that the camera sees via a smooth surface and one that scatters: about half.
-const LEFT: f64 = 0.5;
+const RADIANCE_SHARE: f64 = 0.5;
 
 /// Photons of some lights that may be sent; first those that save most for what they cost.
 pub(super) struct OfferedPhotons {
@@ -23,23 +23,24 @@ pub(super) struct PhotonGain {
     /// How many times as long chance takes to the same error; `None` where it misses light for good or there is none.
     pub(super) gain: Option<Effort>,
     /// Whether some of the photons were sent to objects that are smooth, entirely or in part.
-    pub(super) of_smooth: bool,
+    pub(super) to_smooth: bool,
 }
 
 impl OfferedPhotons {
     /// Weighs the photons that a world sends, from lights of known solid angles in steradians.
     pub(super) fn new(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) -> f64) -> Self {
-        let mut colors = Distinct::default();
+        let mut colors = CurveCache::default();
         let mut spike = |photons: &PhotonWorth| {
             let to = TargetObjects::new(scene, photons.to);
-            let of_light = |light: &LightId| to.shows(*light, size(*light), &mut colors).unwrap_or(f64::INFINITY);
-            LEFT * photons.lights.iter().map(of_light).sum::<f64>() / photons.lights.len() as f64
+            let light_spike =
+                |light: &LightId| to.shown_radiance(*light, size(*light), &mut colors).unwrap_or(f64::INFINITY);
+            RADIANCE_SHARE * photons.lights.iter().map(light_spike).sum::<f64>() / photons.lights.len() as f64
         };
-        let mut known: Vec<_> = photons_worth(world).into_iter().map(|photons| (spike(&photons), photons)).collect();
+        let mut offers: Vec<_> = photons_worth(world).into_iter().map(|photons| (spike(&photons), photons)).collect();
         let saves = |(spike, photons): &(f64, PhotonWorth)| spike * photons.brings.iter().sum::<f64>().abs();
         let costs = |photons: &PhotonWorth| photons.variance * photons.rays;
-        known.sort_by(|a, b| (saves(b) * costs(&a.1)).total_cmp(&(saves(a) * costs(&b.1))));
-        let (spikes, photons) = known.into_iter().unzip();
+        offers.sort_by(|a, b| (saves(b) * costs(&a.1)).total_cmp(&(saves(a) * costs(&b.1))));
+        let (spikes, photons) = offers.into_iter().unzip();
         Self { photons, spikes }
     }
 
@@ -50,14 +51,14 @@ impl OfferedPhotons {
     /// chosen when all else is decided.
     pub(super) fn weigh(&self, noise: &PilotNoise) -> PhotonGain {
         let Self { photons, spikes } = self;
-        let of_smooth = photons.iter().any(|photons| matches!(photons.to, Smoothness::Whole | Smoothness::Partial));
+        let to_smooth = photons.iter().any(|photons| matches!(photons.to, Smoothness::Whole | Smoothness::Partial));
         let totals: Vec<Effort> = (0..=photons.len()).map(|sent| noise.least_work(photons, spikes, sent)).collect();
-        let judged = |sent: usize| totals[sent].judged();
-        let best = (0..totals.len()).min_by(|&a, &b| judged(a).total_cmp(&judged(b))).unwrap_or(0);
+        let effort_of = |sent: usize| totals[sent].judged();
+        let best = (0..totals.len()).min_by(|&a, &b| effort_of(a).total_cmp(&effort_of(b))).unwrap_or(0);
         let best = if totals[0].over(totals[best]).is_clear() { best } else { 0 };
         let gain = totals[0].over(totals[if best == 0 { photons.len() } else { best }]);
         let gain = (gain.judged().is_finite() && !photons.is_empty()).then_some(gain);
-        PhotonGain { photons: photons[..best].to_vec(), gain, of_smooth }
+        PhotonGain { photons: photons[..best].to_vec(), gain, to_smooth }
     }
 }
 
@@ -89,13 +90,13 @@ impl<'a> TargetObjects<'a> {
     /// Returns X + Y + Z of the radiance of a light of some solid angle as the objects show it. If the light is smaller
     /// than the solid angle into which they spread it, this is about its irradiance over that solid angle. Returns
     /// `None` for a light without extent where they spread nothing.
-    fn shows(&self, light: LightId, size: f64, colors: &mut Distinct<[f64; 3]>) -> Option<f64> {
+    fn shown_radiance(&self, light: LightId, size: f64, colors: &mut CurveCache<[f64; 3]>) -> Option<f64> {
         let light = &self.scene.lights[light];
         let blurred = if self.spread > 0.0 { size / (size + self.spread) } else { 1.0 };
         let factor = match light {
             Light::Area(area) => area.brightness() * blurred,
             Light::Environment(environment) => {
-                environment.bright().map_or(environment.mean(), |bright| bright.radiance) * blurred
+                environment.bright_part().map_or(environment.mean(), |bright| bright.radiance) * blurred
             }
             Light::Sun(sun) if sun.angular_diameter > 0.0 => sun.radiance_factor() * blurred,
             _ if self.spread == 0.0 => return None,

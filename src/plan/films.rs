@@ -50,7 +50,7 @@ pub(super) fn films(material: &Material<Curve>) -> Vec<Film<'_>> {
 impl Film<'_> {
     /// Returns what is left of light at some wavelengths, given in nm with the relative widths of their bands. `read`
     /// returns the values of a curve at all of them.
-    pub(super) fn left(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
+    pub(super) fn remaining_light(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         let stacks = self.stacks(waves, &read);
         let (n, k) = match self.beyond {
             Beyond::Nothing => (vec![1.0; stacks.len()], vec![0.0; stacks.len()]),
@@ -73,14 +73,14 @@ impl Film<'_> {
 
     /// Returns the layers for each wavelength in nm and relative width of its band.
     fn stacks(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<Stack> {
-        let of_layer = |layer: &CoatingLayer<Curve>| {
-            let of_index = if layer.is_metal { Quantity::MetalIndex } else { Quantity::Index };
-            let (n, k) = (read(of_index, &layer.index), read(Quantity::MetalExtinction, &layer.k));
-            let thickness = read(Quantity::Thickness, &even(&layer.thickness, self.thickest));
+        let layer_values = |layer: &CoatingLayer<Curve>| {
+            let index_quantity = if layer.is_metal { Quantity::MetalIndex } else { Quantity::Index };
+            let (n, k) = (read(index_quantity, &layer.index), read(Quantity::MetalExtinction, &layer.k));
+            let thickness = read(Quantity::Thickness, &uniform_thickness(&layer.thickness, self.thickest));
             let lane = |i: usize| Layer { index: Complex::new(n[i], -k[i]), thickness_nm: thickness[i] };
             (0..n.len()).map(lane).collect()
         };
-        let layers: Vec<Vec<Layer>> = self.coating.layers.iter().map(of_layer).collect();
+        let layers: Vec<Vec<Layer>> = self.coating.layers.iter().map(layer_values).collect();
         let stack = |(i, wave): (usize, &[f64; 2])| Stack::new(*wave, layers.iter().map(|lanes| lanes[i]));
         waves.iter().enumerate().map(stack).collect()
     }
@@ -89,17 +89,17 @@ impl Film<'_> {
 const MIDDLE_NM: f64 = 550.0;
 
 /// Returns a uniform thickness: for one that varies, the most or the mean.
-fn even(thickness: &Curve, thickest: bool) -> Cow<'_, Curve> {
+fn uniform_thickness(thickness: &Curve, thickest: bool) -> Cow<'_, Curve> {
     let number = |number: f64| Cow::Owned(Curve { kind: CurveKind::Number(number), ..thickness.clone() });
     match &thickness.kind {
         CurveKind::Texture(texture) if thickest => number(f64::from(texture.image.brightest().1)),
         CurveKind::Texture(texture) => number(texture.image.mean()[0]),
         CurveKind::Checker { cells, .. } => {
-            let of_cell = |cell: &Curve| {
-                let even = even(cell, thickest);
-                even.scale * even.kind.rgb().map_or(0.0, |rgb| rgb[0])
+            let cell_thickness = |cell: &Curve| {
+                let uniform_thickness = uniform_thickness(cell, thickest);
+                uniform_thickness.scale * uniform_thickness.kind.rgb().map_or(0.0, |rgb| rgb[0])
             };
-            let [a, b] = cells.each_ref().map(of_cell);
+            let [a, b] = cells.each_ref().map(cell_thickness);
             number(if thickest { a.max(b) } else { 0.5 * (a + b) })
         }
         _ => Cow::Borrowed(thickness),
@@ -119,15 +119,15 @@ pub(super) fn plate(material: &Material<Curve>) -> Option<PathDifference> {
 
 /// Returns what two crossed polarizers let through of light polarized along the first, with a plate at 45 degrees
 /// between them, for each wavelength in nm and relative width of its band: sin^2 of half its phase.
-pub(super) fn between_polarizers(plate: PathDifference, waves: &[[f64; 2]]) -> Vec<f64> {
+pub(super) fn plate_transmittance(plate: PathDifference, waves: &[[f64; 2]]) -> Vec<f64> {
     waves.iter().map(|wave| 0.5 * (1.0 - plate.block(*wave).c)).collect()
 }
 
 /// Describes how lanes read the films and the plates of a material; `None` without any.
-pub(super) fn spoken(material: &Material<Curve>, basis: &Basis) -> Option<String> {
+pub(super) fn describe(material: &Material<Curve>, basis: &Basis) -> Option<String> {
     let waves: Vec<_> = basis.waves().of_fixed_lanes().collect();
     if let Some(plate) = material.with_parts().into_iter().find_map(plate) {
-        return Some(spoken_plate(plate, basis, &waves));
+        return Some(describe_plate(plate, basis, &waves));
     }
     let films = films(material);
     let thickest = films.first().filter(|film| film.thickest)?;
@@ -137,7 +137,7 @@ pub(super) fn spoken(material: &Material<Curve>, basis: &Basis) -> Option<String
     let count = thickest.coating.layers.len();
     let layers = if count == 1 { "a layer".to_owned() } else { format!("{count} layers") };
     let how = if basis.fixed_lanes() <= 3 {
-        format!("its light interferes {}", of_three_bands(basis))
+        format!("its light interferes {}", describe_three_bands(basis))
     } else if widest <= PHASE_STEP {
         "its light interferes at each lane's own wavelength".to_owned()
     } else if optical.iter().all(|&nm| nm <= COHERENT_NM) {
@@ -153,15 +153,15 @@ pub(super) fn spoken(material: &Material<Curve>, basis: &Basis) -> Option<String
 }
 
 /// Describes where three bands read what has fringes.
-fn of_three_bands(basis: &Basis) -> String {
+fn describe_three_bands(basis: &Basis) -> String {
     let [red, green, blue] = [0, 1, 2].map(|band| basis.wavelengths_nm()[band].round());
     format!("at {red}, {green} and {blue} nm only, as three bands have no other wavelengths")
 }
 
-fn spoken_plate(plate: PathDifference, basis: &Basis, waves: &[[f64; 2]]) -> String {
+fn describe_plate(plate: PathDifference, basis: &Basis, waves: &[[f64; 2]]) -> String {
     let widest = waves.iter().map(|wave| plate.phase_step(*wave)).fold(0.0, f64::max);
     let how = if basis.fixed_lanes() <= 3 {
-        format!("its phase is that {}", of_three_bands(basis))
+        format!("its phase is that {}", describe_three_bands(basis))
     } else if widest <= PHASE_STEP {
         "its phase is that at each lane's own wavelength".to_owned()
     } else {

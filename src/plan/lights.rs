@@ -2,16 +2,16 @@
 
 use std::collections::HashMap;
 
-use crate::spectrum::{ColorSpace, Curve, Distinct, Emission, visible};
+use crate::spectrum::{ColorSpace, Curve, CurveCache, Emission, visible};
 
 /// Steps of the spectrum by which lights are told apart at a glance.
-const GLANCE: usize = 24;
+const COARSE_STEPS: usize = 24;
 
 /// Returns a light's spectrum in coarse steps, whose sum is 1.
-fn glance(emission: &Emission) -> [f64; GLANCE] {
-    let mut steps = [0.0; GLANCE];
+fn coarse_spectrum(emission: &Emission) -> [f64; COARSE_STEPS] {
+    let mut steps = [0.0; COARSE_STEPS];
     let count = visible::COUNT as f64;
-    let step = |nm: f64| (((nm - visible::START_NM) / count * GLANCE as f64) as usize).min(GLANCE - 1);
+    let step = |nm: f64| (((nm - visible::START_NM) / count * COARSE_STEPS as f64) as usize).min(COARSE_STEPS - 1);
     visible::wavelengths().zip(emission.spectrum()).for_each(|(nm, power)| steps[step(nm)] += power);
     emission.lines().iter().for_each(|&[nm, power]| steps[step(nm)] += power);
     let total: f64 = steps.iter().sum();
@@ -19,43 +19,44 @@ fn glance(emission: &Emission) -> [f64; GLANCE] {
 }
 
 /// Returns the lights of different spectra, and which of them each curve is.
-pub(super) fn different<'a>(
+pub(super) fn distinct_lights<'a>(
     curves: impl Iterator<Item = &'a Curve>,
     space: ColorSpace,
 ) -> (Vec<(Curve, Emission)>, Vec<usize>) {
-    let mut known: Vec<(Curve, Emission)> = Vec::new();
-    let mut alike: HashMap<[i64; GLANCE], Vec<usize>> = HashMap::new();
+    let mut distinct: Vec<(Curve, Emission)> = Vec::new();
+    let mut alike: HashMap<[i64; COARSE_STEPS], Vec<usize>> = HashMap::new();
     // Thousands of lamps often have the same curve: no spectrum need be computed to see that.
-    let mut looked_at = Distinct::default();
+    let mut distinct_curves = CurveCache::default();
     let number = |curve: &'a Curve| {
-        looked_at.of(curve, |curve| {
+        distinct_curves.of(curve, |curve| {
             let emission = Emission::new(curve, space);
-            let alike = alike.entry(glance(&emission).map(|x| (x * 1e6).round() as i64)).or_default();
-            if let Some(&number) = alike.iter().find(|&&number| known[number].1.looks_like(&emission)) {
+            let alike = alike.entry(coarse_spectrum(&emission).map(|x| (x * 1e6).round() as i64)).or_default();
+            if let Some(&number) = alike.iter().find(|&&number| distinct[number].1.looks_like(&emission)) {
                 return number;
             }
-            alike.push(known.len());
-            known.push((curve.clone(), emission));
-            known.len() - 1
+            alike.push(distinct.len());
+            distinct.push((curve.clone(), emission));
+            distinct.len() - 1
         })
     };
     let numbers = curves.map(number).collect();
-    (known, numbers)
+    (distinct, numbers)
 }
 
-/// Chooses at most `most` of the lights, each as far as possible from all before it.
-pub(super) fn farthest_apart(lights: &[(Curve, Emission)], most: usize) -> Vec<usize> {
-    if lights.len() <= most {
+/// Chooses at most `max_count` of the lights, each as far as possible from all before it.
+pub(super) fn farthest_apart(lights: &[(Curve, Emission)], max_count: usize) -> Vec<usize> {
+    if lights.len() <= max_count {
         return (0..lights.len()).collect();
     }
-    let glances: Vec<[f64; GLANCE]> = lights.iter().map(|(_, emission)| glance(emission)).collect();
+    let coarse_spectra: Vec<[f64; COARSE_STEPS]> =
+        lights.iter().map(|(_, emission)| coarse_spectrum(emission)).collect();
     let mut distances = vec![f64::INFINITY; lights.len()];
     let (mut chosen, mut next) = (Vec::new(), 0);
-    while chosen.len() < most {
+    while chosen.len() < max_count {
         chosen.push(next);
-        for (distance, other) in distances.iter_mut().zip(&glances) {
-            let apart = other.iter().zip(&glances[next]).map(|(a, b)| (a - b).abs()).sum();
-            *distance = distance.min(apart);
+        for (distance, other) in distances.iter_mut().zip(&coarse_spectra) {
+            let difference = other.iter().zip(&coarse_spectra[next]).map(|(a, b)| (a - b).abs()).sum();
+            *distance = distance.min(difference);
         }
         next = (0..lights.len()).max_by(|&a, &b| distances[a].total_cmp(&distances[b])).unwrap_or(0);
     }

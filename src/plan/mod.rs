@@ -30,11 +30,11 @@ use crate::trace::{
     FIRST_LOOK, Method, PhotonCost, PhotonTimes, Probe, Transport, bytes_of_film, photon_times, prepare_unguided,
     probe, small_highlights,
 };
-use caustics::left_of_points;
+use caustics::left_out_point_light;
 use lit::LitWorld;
 use model::Model;
-use survey::method_of_paths;
-use words::{in_number, in_words};
+use survey::path_method;
+use words::{format_count, format_duration};
 
 pub use candidates::Candidate;
 
@@ -63,7 +63,7 @@ pub struct Plan {
 }
 
 /// Samples per pixel where the scene does not specify them.
-const SAMPLES: u32 = 256;
+const DEFAULT_SAMPLES: u32 = 256;
 /// Where wavelengths are drawn, refracted rays that are closer than this, in pixels, continue as one: a twentieth of
 /// the visible dispersion, so that several surfaces in a row stay below it.
 const TOGETHER_PIXELS: f64 = 0.01;
@@ -73,8 +73,8 @@ const TOGETHER_PIXELS: f64 = 0.01;
 /// # Panics
 /// If a program has changed the scene since it was compiled, such as to one without pixels.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
-    let Model { basis, missed, error: model_error, because: mut decisions, next, candidates } = model::model(scene);
-    let (method, reason) = before_light(scene, basis, model_error);
+    let Model { basis, error_line, error: model_error, because: mut decisions, next, candidates } = model::model(scene);
+    let (method, reason) = base_method(scene, basis, model_error);
     decisions.push(reason);
     let unlit = prepare_unguided(scene, method);
     let highlights = small_highlights(&unlit);
@@ -92,12 +92,12 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let method = Method { seed: scene.render.seed, ..world.method().clone() };
     let probe = probe(&world);
     let times = photon_times(&guided.map_or(world.clone(), |guided| world.clone().guided_by(&guided)));
-    let on_average = Probe { time: probe.time.mul_f64(times_rays), rays: probe.rays * times_rays, ..probe };
-    let (cost, processor_time) = cost(scene, &method, &on_average, times);
+    let average_probe = Probe { time: probe.time.mul_f64(times_rays), rays: probe.rays * times_rays, ..probe };
+    let (cost, processor_time) = cost(scene, &method, &average_probe, times);
     let mut because = vec![cost];
     because.extend(stopping::reason(scene, method.stop.as_ref(), model_error));
-    because.extend(memory(scene, &method));
-    because.extend(missed);
+    because.extend(describe_memory(scene, &method));
+    because.extend(error_line);
     let left_out: Vec<String> = polarization.left_out.into_iter().chain(lights(scene, &method)).collect();
     because.extend(left_out.iter().cloned());
     let summary_lines = because.len();
@@ -105,9 +105,9 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     if probe.parted > 0.0 {
         because.push(format!("lanes separate in {:.0} % of the camera samples", 100.0 * probe.parted));
     }
-    because.extend(next.map(|basis| beside(scene, &method, &probe, basis)));
+    because.extend(next.map(|basis| compare_cost(scene, &method, &probe, basis)));
     Plan {
-        photon_cost: times.in_samples(on_average.time),
+        photon_cost: times.in_samples(average_probe.time),
         method,
         because,
         summary_lines,
@@ -120,29 +120,29 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
 }
 
 /// Returns what does not depend on how light is found, and an explanation of which branches are followed.
-fn before_light(scene: &Scene<Curve>, basis: Basis, model_error: f64) -> (Method, String) {
+fn base_method(scene: &Scene<Curve>, basis: Basis, model_error: f64) -> (Method, String) {
     let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
     let (transport, reason) = transport::transport(scene, &basis, together);
     let stop = stopping::stop(&scene.render, scene.film.window(), model_error);
     let samples = match (transport, scene.render.samples) {
-        _ if stop.is_some() => stopping::COUNTED_FOR,
+        _ if stop.is_some() => stopping::NOMINAL_SAMPLES,
         (_, Some(samples)) => samples,
         (Transport::Deterministic { .. }, None) => 1,
-        (Transport::Random { .. }, None) => SAMPLES,
+        (Transport::Random { .. }, None) => DEFAULT_SAMPLES,
     };
-    (Method { together, samples, stop, ..method_of_paths(scene, basis, transport) }, reason)
+    (Method { together, samples, stop, ..path_method(scene, basis, transport) }, reason)
 }
 
 /// Describes the memory of the film and its layers, where that is much.
-fn memory(scene: &Scene<Curve>, method: &Method) -> impl Iterator<Item = String> {
-    let takes = |what: String, bytes: u64| {
+fn describe_memory(scene: &Scene<Curve>, method: &Method) -> impl Iterator<Item = String> {
+    let memory_line = |what: String, bytes: u64| {
         let gigabytes = bytes as f64 / 1e9;
         (gigabytes >= 1.0).then(|| format!("{what} take {gigabytes:.1} GB of memory"))
     };
     let Window { width, height, .. } = scene.film.window();
-    let film = takes(format!("film: {width} x {height} pixels"), bytes_of_film(scene, method));
+    let film = memory_line(format!("film: {width} x {height} pixels"), bytes_of_film(scene, method));
     let channels = scene.layer_channels();
-    let layers = takes(format!("layers: {channels} channels beside the image"), scene.layer_bytes());
+    let layers = memory_line(format!("layers: {channels} channels beside the image"), scene.layer_bytes());
     film.into_iter().chain(layers)
 }
 
@@ -150,20 +150,20 @@ fn memory(scene: &Scene<Curve>, method: &Method) -> impl Iterator<Item = String>
 fn lights(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
     let mut lines = Vec::new();
     let lobes = || scene.materials.iter().map(|named| named.material.lobes());
-    let wide = |diffuse| lobes().any(|lobes| lobes.is_wide() && lobes.is_diffuse() == diffuse);
-    let lit = match [wide(true), wide(false)] {
+    let has_wide_lobe = |diffuse| lobes().any(|lobes| lobes.is_wide() && lobes.is_diffuse() == diffuse);
+    let lit = match [has_wide_lobe(true), has_wide_lobe(false)] {
         [false, false] => None,
         [true, false] => Some("diffuse"),
         [false, true] => Some("rough"),
         [true, true] => Some("diffuse or rough"),
     };
     if let (Some(lit), false) = (lit, scene.lights.iter().all(Light::is_extended)) {
-        lines.extend(left_of_points(scene, method, lit));
+        lines.extend(left_out_point_light(scene, method, lit));
     }
     if let Some(bounces) = scene.render.max_bounces {
         lines.push(format!("max_bounces {bounces}: light from longer paths is left out; the report says how much"));
     }
-    match scene.render.diffuse_bounces.filter(|_| wide(true)) {
+    match scene.render.diffuse_bounces.filter(|_| has_wide_lobe(true)) {
         Some(0) => lines.push("diffuse_bounces 0: diffuse surfaces receive only direct light".into()),
         Some(bounces) => lines.push(format!(
             "diffuse_bounces {bounces}: light after more diffuse bounces is left out; the report says how much"
@@ -177,32 +177,32 @@ fn lights(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
 fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe, times: PhotonTimes) -> (String, Duration) {
     let window = scene.film.window();
     let samples = window.pixels() as f64 * f64::from(method.samples);
-    let of_map = method.map().map_or(0, |map| map.all_photons());
-    let shown = method.light_pass.as_ref().map_or(0, |pass| pass.photons);
-    let photons = shown + of_map;
-    let of_photons = times.splatted.mul_f64(shown as f64) + times.stored.mul_f64(of_map as f64);
-    let of_light_paths = probe.light_paths.mul_f64(f64::from(method.samples));
-    let time = probe.time.mul_f64(samples) + of_photons + of_light_paths;
-    let (share, of) = match method.stop {
+    let map_photons = method.map().map_or(0, |map| map.all_photons());
+    let shown_photons = method.light_pass.as_ref().map_or(0, |pass| pass.photons);
+    let photons = shown_photons + map_photons;
+    let photon_time = times.splatted.mul_f64(shown_photons as f64) + times.stored.mul_f64(map_photons as f64);
+    let light_path_time = probe.light_paths.mul_f64(f64::from(method.samples));
+    let time = probe.time.mul_f64(samples) + photon_time + light_path_time;
+    let (share, link) = match method.stop {
         Some(_) => (f64::from(FIRST_LOOK) / f64::from(method.samples), " for each"),
         None => (1.0, ":"),
     };
-    let (told, photons) = ((share * f64::from(method.samples)) as u32, (share * photons as f64) as u64);
+    let (sample_count, photons) = ((share * f64::from(method.samples)) as u32, (share * photons as f64) as u64);
     let line = format!(
-        "cost: about {} of processor time{of} {told} sample{} per pixel, {:.1} rays each{}",
-        in_words(share * time.as_secs_f64()),
-        if told == 1 { "" } else { "s" },
+        "cost: about {} of processor time{link} {sample_count} sample{} per pixel, {:.1} rays each{}",
+        format_duration(share * time.as_secs_f64()),
+        if sample_count == 1 { "" } else { "s" },
         probe.rays,
-        if photons > 0 { format!(", and {} photons", in_number(photons)) } else { String::new() },
+        if photons > 0 { format!(", and {} photons", format_count(photons)) } else { String::new() },
     );
     (line, time)
 }
 
 /// Describes what another model of color would cost.
-fn beside(scene: &Scene<Curve>, method: &Method, probe_of_method: &Probe, basis: Basis) -> String {
+fn compare_cost(scene: &Scene<Curve>, method: &Method, own_probe: &Probe, basis: Basis) -> String {
     let name = basis.name();
     let other = probe(&prepare_unguided(scene, Method { basis, ..method.clone() }));
-    let times = other.time.as_secs_f64() / probe_of_method.time.as_secs_f64();
+    let times = other.time.as_secs_f64() / own_probe.time.as_secs_f64();
     let what = if method.basis.draws_wavelengths() { "without dispersion, as" } else { "with" };
     format!("for comparison: {what} {name}, a sample would take {times:.1} times as long")
 }

@@ -3,27 +3,27 @@
 use std::cell::LazyCell;
 use std::collections::BTreeSet;
 
-use super::candidates::{Candidate, LANES_SAFETY, bands_beside, bands_showing, candidates, error, own_lines};
-use super::dyes::spoken as spoken_dyes;
-use super::films::spoken as spoken_film;
+use super::candidates::{Candidate, LANES_SAFETY, bands_covering, candidates, error, fixed_bands, lines_with_lane};
+use super::dyes::describe as describe_dyes;
+use super::films::describe as describe_film;
 use super::seen::Seen;
-use super::survey::{Survey, disperses, method_of_a_look, tolerance};
-use super::words::{at_most, percent};
+use super::survey::{Survey, disperses, look_method, tolerance};
+use super::words::{percent, percent_bound};
 use crate::material::{Dielectric, Material};
 use crate::scene::{ModelText, NamedMaterial, Scene};
-use crate::spectrum::{Basis, Curve, CurveKind, Dye, Emission, MAX_LANES, Quantity, provenance};
+use crate::spectrum::{Basis, Curve, CurveKind, Dye, Emission, MAX_LANES, Quantity, index_source};
 use crate::trace::{COLORS_NM, Dispersion, World, dispersion as measured_dispersion};
 
 /// Share of the camera rays on dispersive surfaces above which twice as many wavelengths are carried.
-const FILLED: f64 = 0.5;
+const FILLING_SHARE: f64 = 0.5;
 /// Fixed and hero wavelengths where dispersion is visible, and where it fills the image.
-const HERO: [[usize; 2]; 2] = [[12, 4], [24, 8]];
+const HERO_LANES: [[usize; 2]; 2] = [[12, 4], [24, 8]];
 
 /// What the lanes stand for, why, and a basis to compare its cost with.
 pub(super) struct Model {
     pub(super) basis: Basis,
     /// How far colors may be off, in words.
-    pub(super) missed: Option<String>,
+    pub(super) error_line: Option<String>,
     /// How far colors may be off, as a number.
     pub(super) error: f64,
     pub(super) because: Vec<String>,
@@ -37,70 +37,70 @@ pub(super) struct Model {
 pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let dispersion = dispersion(scene);
     let visible = dispersion.is_some_and(|d| d.is_visible());
-    let asks_hero = scene.render.model == ModelText::Hero;
-    let together = !visible && !asks_hero;
+    let requests_heroes = scene.render.model == ModelText::Hero;
+    let together = !visible && !requests_heroes;
     let survey = Survey::new(scene, together);
     let seen = Seen::new(scene, &survey);
-    let hero = asks_hero || (scene.render.model == ModelText::Auto && visible);
-    let filled = dispersion.is_some_and(|d| d.seen > FILLED);
-    let [bands, heroes] = HERO[usize::from(filled)];
+    let hero = requests_heroes || (scene.render.model == ModelText::Auto && visible);
+    let fills_view = dispersion.is_some_and(|d| d.seen > FILLING_SHARE);
+    let [bands, heroes] = HERO_LANES[usize::from(fills_view)];
     let shown = scene.format.spectral.as_ref();
     let spectral = shown.is_some();
     let candidates = candidates(&survey, &seen, if hero { heroes } else { 0 });
     let tolerance = tolerance(scene);
-    let fewest = if hero { bands_beside(&survey, bands, heroes).fixed_lanes() } else { 0 };
-    let chosen = choice(&candidates, tolerance, fewest);
+    let min_lanes = if hero { fixed_bands(&survey, bands, heroes).fixed_lanes() } else { 0 };
+    let chosen = choose_candidate(&candidates, tolerance, min_lanes);
 
-    let is_exact = survey.is_plain() && candidates[0].error == 0.0;
+    let is_exact = survey.is_rgb_only() && candidates[0].error == 0.0;
     let with_heroes = |bands| {
         let lights = survey.emissions();
-        let basis = bands_showing(&survey, bands, heroes, shown).with_heroes(heroes, &lights);
-        shown.iter().fold(basis, |basis, shown| basis.showing(shown, &lights))
+        let basis = bands_covering(&survey, bands, heroes, shown).with_heroes(heroes, &lights);
+        shown.iter().fold(basis, |basis, shown| basis.spread_over_bands(shown, &lights))
     };
     let (basis, why) = match scene.render.model {
-        _ if hero && spectral && asks_hero => (with_heroes(MAX_LANES), "the scene asks for it".to_owned()),
+        _ if hero && spectral && requests_heroes => (with_heroes(MAX_LANES), "the scene asks for it".to_owned()),
         _ if hero && spectral => (with_heroes(MAX_LANES), "dispersion is seen, and spectra are asked for".to_owned()),
-        _ if hero && asks_hero => (with_heroes(bands), "the scene asks for it".to_owned()),
+        _ if hero && requests_heroes => (with_heroes(bands), "the scene asks for it".to_owned()),
         _ if hero => {
-            let least = candidates[chosen].basis.fixed_lanes().saturating_sub(own_lines(&survey, heroes).len());
+            let least = candidates[chosen].basis.fixed_lanes().saturating_sub(lines_with_lane(&survey, heroes).len());
             (with_heroes(bands.max(least)), "dispersion is seen".to_owned())
         }
         ModelText::Rgb => (three_bands(&survey), "the scene asks for it".to_owned()),
-        ModelText::Bands(count) => (bands_beside(&survey, count as usize, 0), "the scene asks for it".to_owned()),
+        ModelText::Bands(count) => (fixed_bands(&survey, count as usize, 0), "the scene asks for it".to_owned()),
         _ if spectral => {
-            (bands_showing(&survey, MAX_LANES, 0, shown), "the most lanes available, for the spectra".to_owned())
+            (bands_covering(&survey, MAX_LANES, 0, shown), "the most lanes available, for the spectra".to_owned())
         }
         _ => (candidates[chosen].basis.clone(), least(&candidates, chosen, tolerance, is_exact)),
     };
     let next =
         if hero { candidates.get(chosen) } else { candidates.get(chosen + 1) }.map(|candidate| candidate.basis.clone());
-    let next = next.filter(|_| hero || !survey.is_plain());
+    let next = next.filter(|_| hero || !survey.is_rgb_only());
     let may_miss = !is_exact || basis.fixed_lanes() > 3;
     let error = if may_miss { bound(&candidates, &basis, &survey, &seen) } else { 0.0 };
-    let missed = may_miss.then(|| missed(&candidates, &basis, error, tolerance));
+    let error_line = may_miss.then(|| error_line(&candidates, &basis, error, tolerance));
     let is_for_spectra = spectral && scene.render.model == ModelText::Auto;
-    let beyond = if is_for_spectra && error > tolerance { format!("; {BEYOND}") } else { String::new() };
-    let mut because = vec![format!("model {}: {}; {why}{beyond}", basis.name(), lanes(&basis))];
+    let caveat = if is_for_spectra && error > tolerance { format!("; {BEYOND_TOLERANCE}") } else { String::new() };
+    let mut because = vec![format!("model {}: {}; {why}{caveat}", basis.name(), describe_lanes(&basis))];
     because.extend(lines_without_lane(&survey, &basis));
-    because.extend(dispersion.map(|d| spoken(&d, visible, hero)));
+    because.extend(dispersion.map(|d| describe(&d, visible, hero)));
     let basis = if together { basis.kept_together() } else { basis };
-    because.extend(desaturated(scene, &basis));
-    because.extend(materials(scene, &basis));
+    because.extend(describe_desaturation(scene, &basis));
+    because.extend(describe_materials(scene, &basis));
     let next = next.map(|next| if together || hero { next.kept_together() } else { next });
-    Model { basis, missed, error, because, next, candidates }
+    Model { basis, error_line, error, because, next, candidates }
 }
 
 /// Returns the index of the first candidate that misses no color by more than is tolerated. Without one, returns that
-/// of the candidate that misses least among those with at least `fewest` fixed lanes.
-fn choice(candidates: &[Candidate], tolerance: f64, fewest: usize) -> usize {
+/// of the candidate that misses least among those with at least `min_lanes` fixed lanes.
+fn choose_candidate(candidates: &[Candidate], tolerance: f64, min_lanes: usize) -> usize {
     let within = candidates.iter().position(|candidate| candidate.bound() <= tolerance);
-    let many = (0..candidates.len()).filter(|&number| candidates[number].basis.fixed_lanes() >= fewest);
+    let many = (0..candidates.len()).filter(|&number| candidates[number].basis.fixed_lanes() >= min_lanes);
     let nearest = many.min_by(|&a, &b| candidates[a].bound().total_cmp(&candidates[b].bound()));
     within.or(nearest).unwrap_or(candidates.len() - 1)
 }
 
 /// Describes what a sample carries.
-fn lanes(basis: &Basis) -> String {
+fn describe_lanes(basis: &Basis) -> String {
     let (all, fixed) = (basis.lanes(), basis.fixed_lanes());
     match all - fixed {
         0 if fixed <= 3 => format!("{all} lanes"),
@@ -114,7 +114,7 @@ fn lanes(basis: &Basis) -> String {
 /// Returns three bands, whatever they miss.
 fn three_bands(survey: &Survey) -> Basis {
     let space = survey.color_space;
-    match (survey.is_plain(), survey.common_light()) {
+    match (survey.is_rgb_only(), survey.common_light()) {
         (true, _) => Basis::rgb(space),
         (false, Some(light)) => Basis::prefiltered(space, &light),
         (false, None) => Basis::prefiltered(space, &Emission::new(&1.0.into(), space)),
@@ -122,7 +122,7 @@ fn three_bands(survey: &Survey) -> Basis {
 }
 
 /// The message where no number of lanes is enough.
-const BEYOND: &str = "some color may be off by more than is tolerated";
+const BEYOND_TOLERANCE: &str = "some color may be off by more than is tolerated";
 
 fn least(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -> String {
     match candidates[chosen].bound() {
@@ -130,8 +130,8 @@ fn least(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -
             "every color is a number or rgb under the film's white, so more lanes would change nothing".into()
         }
         bound if bound <= tolerance => "the fewest lanes that keep every color within the tolerance".into(),
-        _ if chosen + 1 == candidates.len() => format!("the most lanes available; {BEYOND}"),
-        _ => format!("more lanes would be no more accurate; {BEYOND}"),
+        _ if chosen + 1 == candidates.len() => format!("the most lanes available; {BEYOND_TOLERANCE}"),
+        _ => format!("more lanes would be no more accurate; {BEYOND_TOLERANCE}"),
     }
 }
 
@@ -142,18 +142,18 @@ fn bound(candidates: &[Candidate], basis: &Basis, survey: &Survey, seen: &Seen) 
 }
 
 /// Describes all candidates in one line, and the basis with its bound; for heroes, what their fixed lanes miss.
-fn missed(candidates: &[Candidate], basis: &Basis, bound: f64, tolerance: f64) -> String {
+fn error_line(candidates: &[Candidate], basis: &Basis, bound: f64, tolerance: f64) -> String {
     if basis.draws_wavelengths() {
         let bounded = if bound > 1.0 { "some color may be" } else { "colors are" };
-        let at_most = if bound > 1.0 { at_most(bound) } else { format!("at most {}", percent(bound)) };
-        return format!("{bounded} off by {at_most} ({} is tolerated)", percent(tolerance));
+        let percent_bound = if bound > 1.0 { percent_bound(bound) } else { format!("at most {}", percent(bound)) };
+        return format!("{bounded} off by {percent_bound} ({} is tolerated)", percent(tolerance));
     }
     let mut steps: Vec<String> = candidates
         .iter()
-        .map(|candidate| format!("{} {}", candidate.basis.name(), at_most(candidate.bound())))
+        .map(|candidate| format!("{} {}", candidate.basis.name(), percent_bound(candidate.bound())))
         .collect();
     if !candidates.iter().any(|candidate| candidate.basis.name() == basis.name()) {
-        steps.push(format!("{} {}", basis.name(), at_most(bound)));
+        steps.push(format!("{} {}", basis.name(), percent_bound(bound)));
     }
     format!("colors are off by at most ({} is tolerated): {}", percent(tolerance), steps.join(", "))
 }
@@ -174,17 +174,17 @@ fn lines_without_lane(survey: &Survey, basis: &Basis) -> Option<String> {
 
 /// Measures how far dispersive glass pulls colors apart; `None` if there is none.
 fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
-    let of_three =
+    let has_three_indices =
         |glass: &Dielectric<Curve>| matches!(glass.index.kind, CurveKind::Rgb([r, g, b]) if r != g || g != b);
     // Under white light and with paints of three numbers, three indices suffice. Otherwise each wavelength has its own.
-    let is_plain = LazyCell::new(|| Survey::new(scene, true).is_plain());
-    let parts = |glass: &Dielectric<Curve>| disperses(glass) || of_three(glass) && !*is_plain;
-    scene.materials.iter().find(|m| m.material.medium().is_some_and(parts))?;
+    let is_rgb_only = LazyCell::new(|| Survey::new(scene, true).is_rgb_only());
+    let parts_lanes = |glass: &Dielectric<Curve>| disperses(glass) || has_three_indices(glass) && !*is_rgb_only;
+    scene.materials.iter().find(|m| m.material.medium().is_some_and(parts_lanes))?;
     let basis = Basis::wavelengths(scene.film.color_space, COLORS_NM.into(), &[]);
-    Some(measured_dispersion(&World::new(scene, method_of_a_look(scene, basis))))
+    Some(measured_dispersion(&World::new(scene, look_method(scene, basis))))
 }
 
-fn spoken(dispersion: &Dispersion, visible: bool, hero: bool) -> String {
+fn describe(dispersion: &Dispersion, visible: bool, hero: bool) -> String {
     let [from, to] = COLORS_NM;
     let pixels = |x: f64| if x < 9.95 { format!("{x:.2}") } else { format!("{x:.0}") };
     let share = match 100.0 * dispersion.seen {
@@ -202,17 +202,17 @@ fn spoken(dispersion: &Dispersion, visible: bool, hero: bool) -> String {
             format!("{seen} apart, and up to {lit} pixels where it lights surfaces")
         }
     };
-    let what = match (visible, hero) {
+    let consequence = match (visible, hero) {
         (true, true) => "so wavelengths separate",
         (true, false) => "so lanes separate",
         (false, true) => "less than can be seen, but the scene asks for it",
         (false, false) => "less than 0.2 cannot be seen, so lanes stay together",
     };
-    format!("dispersion: {shown}; {what}")
+    format!("dispersion: {shown}; {consequence}")
 }
 
 /// Describes how many colors are more saturated than any reflectance.
-fn desaturated(scene: &Scene<Curve>, basis: &Basis) -> Option<String> {
+fn describe_desaturation(scene: &Scene<Curve>, basis: &Basis) -> Option<String> {
     if basis.fixed_lanes() <= 3 {
         return None;
     }
@@ -230,34 +230,34 @@ fn desaturated(scene: &Scene<Curve>, basis: &Basis) -> Option<String> {
 }
 
 /// Most materials that are described one by one.
-const TOLD: usize = 20;
+const MAX_MATERIALS: usize = 20;
 
 /// Describes where the data of clear bodies and metals come from, and what is known of films and dyes.
-fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
+fn describe_materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
     let mut known = BTreeSet::new();
-    let about = |named: &NamedMaterial<Curve>| {
-        let lines = about_material(&named.material, basis);
+    let new_lines = |named: &NamedMaterial<Curve>| {
+        let lines = describe_material(&named.material, basis);
         let lines = lines.into_iter().map(|line| format!("material {}: {line}", named.name));
         // Each object has its own sheet, which turns with it: equal lines are given once.
         let new: Vec<String> = lines.filter(|line| known.insert(line.clone())).collect();
         (!new.is_empty()).then_some(new)
     };
-    let told: Vec<Vec<String>> = scene.materials.iter().filter_map(about).collect();
-    let more = match told.len().saturating_sub(TOLD) {
+    let descriptions: Vec<Vec<String>> = scene.materials.iter().filter_map(new_lines).collect();
+    let more = match descriptions.len().saturating_sub(MAX_MATERIALS) {
         0 => None,
         1 => Some("1 more material is clear, a metal, coated or fluorescent".to_owned()),
         more => Some(format!("{more} more materials are clear, metals, coated or fluorescent")),
     };
-    told.into_iter().take(TOLD).flatten().chain(more).collect()
+    descriptions.into_iter().take(MAX_MATERIALS).flatten().chain(more).collect()
 }
 
-fn about_material(material: &Material<Curve>, basis: &Basis) -> Vec<String> {
+fn describe_material(material: &Material<Curve>, basis: &Basis) -> Vec<String> {
     let dyes: Vec<Dye> = material.dyes().into_iter().map(|dye| dye.dye()).collect();
     let numbers = match material {
         Material::Dielectric(glass) => {
             let table = basis.tabulate(Quantity::Index, &glass.index);
             let (low, high) = table.range();
-            let source = provenance(&glass.index).map_or(String::new(), |source| format!(" ({source})"));
+            let source = index_source(&glass.index).map_or(String::new(), |source| format!(" ({source})"));
             Some(match (table.is_flat(), table.direction()) {
                 (true, _) => format!("index {low:.4} in every lane{source}, so lanes stay together"),
                 (_, Some(one)) => format!(
@@ -266,8 +266,8 @@ fn about_material(material: &Material<Curve>, basis: &Basis) -> Vec<String> {
                 _ => format!("index {low:.4} to {high:.4}{source}, so lanes separate"),
             })
         }
-        Material::Conductor(metal) => provenance(&metal.n).map(|source| format!("n and k from {source}")),
+        Material::Conductor(metal) => index_source(&metal.n).map(|source| format!("n and k from {source}")),
         _ => None,
     };
-    [spoken_dyes(&dyes, basis), spoken_film(material, basis), numbers].into_iter().flatten().collect()
+    [describe_dyes(&dyes, basis), describe_film(material, basis), numbers].into_iter().flatten().collect()
 }

@@ -1,13 +1,13 @@
 //! Decides whether polarization is traced, and why.
 
 use super::survey::tolerance;
-use super::words::{against, percent};
+use super::words::{percent, percent_and_limit};
 use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Polarizing, World, most_changed, polarization_error};
 
 /// What is decided about polarization, and what the user is told.
-pub(super) struct Decided {
+pub(super) struct Decision {
     pub(super) polarization: Polarizing,
     pub(super) why: Option<String>,
     pub(super) left_out: Option<String>,
@@ -16,18 +16,18 @@ pub(super) struct Decided {
 }
 
 /// Factor by which the error may be larger than measured, since so few samples may miss some of it.
-const MISSED: f64 = 2.0;
+const SAFETY: f64 = 2.0;
 
 /// Traces polarization where the scene asks for it, or where leaving it out would cause an error above the tolerance:
 /// in the whole format, so that all parts of an image are rendered the same way.
-pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
+pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decision {
     let on = |why: String| {
         let why = Some(format!("polarization on: {why}"));
-        Decided { polarization: Polarizing::Traced, why, left_out: None, error: None }
+        Decision { polarization: Polarizing::Traced, why, left_out: None, error: None }
     };
     let off = |why: Option<String>, left_out: Option<String>| {
         let why = why.map(|why| format!("polarization off: {why}"));
-        Decided { polarization: Polarizing::Averaged, why, left_out, error: None }
+        Decision { polarization: Polarizing::Averaged, why, left_out, error: None }
     };
     let world = &world.of_the_format();
     match scene.render.polarization {
@@ -37,8 +37,8 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
         }
         PolarizationText::Auto => {}
     }
-    if let Some(asking) = asking(scene) {
-        return on(asking);
+    if let Some(why_required) = why_required(scene) {
+        return on(why_required);
     }
     let bound = most_changed(world);
     let tolerated = tolerance(scene);
@@ -47,18 +47,18 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
         return off(None, left_out(bound).map(within));
     }
     let error = polarization_error(world);
-    let traced_above = tolerated / MISSED;
-    let [found, limit] = against(error, traced_above);
+    let traced_above = tolerated / SAFETY;
+    let [found, limit] = percent_and_limit(error, traced_above);
     let measured = format!("{found} (it is traced above {limit})");
     if error > traced_above {
         on(format!("without it, the image would be wrong by {measured}"))
     } else {
-        Decided { error: Some(error), ..off(Some(format!("without it, the image is wrong by {measured}")), None) }
+        Decision { error: Some(error), ..off(Some(format!("without it, the image is wrong by {measured}")), None) }
     }
 }
 
 /// Describes what in a scene has no meaning without polarization, if anything.
-fn asking(scene: &Scene<Curve>) -> Option<String> {
+fn why_required(scene: &Scene<Curve>) -> Option<String> {
     if scene.camera.filter().is_some() {
         return Some("there is a filter in front of the camera".into());
     }
@@ -74,9 +74,9 @@ fn asking(scene: &Scene<Curve>) -> Option<String> {
 
 /// Describes how much polarization may change; `None` where that is negligible.
 fn left_out(change: f64) -> Option<String> {
-    (change > NOTHING)
+    (change > NEGLIGIBLE)
         .then(|| format!("left out: polarization, which changes at most {} of the light seen", percent(change)))
 }
 
 /// A share that is too small to mention.
-const NOTHING: f64 = 1e-4;
+const NEGLIGIBLE: f64 = 1e-4;

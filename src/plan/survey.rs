@@ -3,38 +3,38 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::films::{Film, between_polarizers, films, plate};
-use super::lights::{different, farthest_apart};
+use super::films::{Film, films, plate, plate_transmittance};
+use super::lights::{distinct_lights, farthest_apart};
 use crate::material::{
     Conductor, Dielectric, Material, PathDifference, Plastic, conductor_reflectance, diffuse_transmittance,
 };
 use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::{
-    Basis, ColorSpace, Curve, CurveKind, Dye, Emission, Excitable, Lanes, MAX_LANES, Quantity, Upsampler,
+    Basis, ColorSpace, Curve, CurveKind, Dye, Emission, Lanes, MAX_LANES, PreparedDye, Quantity, Upsampler,
     normal_reflectance, visible,
 };
 use crate::trace::{Method, Transport};
 
 /// The share of the error that the model of color may make; noise may make the rest.
-const SHARE: f64 = 1.0 / 3.0;
+const MODEL_SHARE: f64 = 1.0 / 3.0;
 /// The relative error that an image aims at where the scene does not specify one.
-const ERROR: f64 = 0.03;
+const DEFAULT_ERROR: f64 = 0.03;
 /// The seed of a plan's looks, whatever the image's: otherwise, its model of color could change from frame to frame.
 const SEED: u64 = 0;
 
 /// Returns the relative error of a color that its model may make.
 pub(super) fn tolerance(scene: &Scene<Curve>) -> f64 {
-    SHARE * scene.render.error.unwrap_or(ERROR)
+    MODEL_SHARE * scene.render.error.unwrap_or(DEFAULT_ERROR)
 }
 
 /// Returns the magnitude of the channel that is farthest from 0: what an error of a color is relative to.
-pub(super) fn strongest(color: [f64; 3]) -> f64 {
+pub(super) fn max_channel(color: [f64; 3]) -> f64 {
     color.into_iter().fold(0.0_f64, |most, x| most.max(x.abs()))
 }
 
 /// Returns the error of a color in its worst channel.
-pub(super) fn missed(found: [f64; 3], exact: [f64; 3]) -> f64 {
-    strongest(std::array::from_fn(|c| found[c] - exact[c]))
+pub(super) fn max_channel_error(found: [f64; 3], exact: [f64; 3]) -> f64 {
+    max_channel(std::array::from_fn(|c| found[c] - exact[c]))
 }
 
 /// Returns what is left of light as lanes, one number for each.
@@ -43,7 +43,7 @@ pub(super) fn lanes(left: &[f64]) -> Lanes<MAX_LANES> {
 }
 
 /// Returns the method of paths that are as long as the scene allows.
-pub(super) fn method_of_paths(scene: &Scene<Curve>, basis: Basis, transport: Transport) -> Method {
+pub(super) fn path_method(scene: &Scene<Curve>, basis: Basis, transport: Transport) -> Method {
     Method {
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
@@ -52,9 +52,9 @@ pub(super) fn method_of_paths(scene: &Scene<Curve>, basis: Basis, transport: Tra
 }
 
 /// Returns the method with which a plan looks where colors go: no path splits, and none is ended at random.
-pub(super) fn method_of_a_look(scene: &Scene<Curve>, basis: Basis) -> Method {
+pub(super) fn look_method(scene: &Scene<Curve>, basis: Basis) -> Method {
     let transport = Transport::Random { split: 1.0, roulette: 0.0 };
-    method_of_paths(scene, basis, transport)
+    path_method(scene, basis, transport)
 }
 
 /// The colors of a scene: what shines and what tints.
@@ -64,9 +64,9 @@ pub(super) struct Survey<'a> {
     /// One light for each different spectrum: its curve as it is written, and its emission.
     pub(super) lights: Vec<(Curve, Emission)>,
     /// For each light of the scene, its index among these.
-    pub(super) light_numbers: Vec<usize>,
+    pub(super) light_indices: Vec<usize>,
     /// Indices of the lights by which models are judged.
-    judged: Vec<usize>,
+    reference_lights: Vec<usize>,
     tints: Vec<Tint<'a>>,
     /// The dyes, each with the reflectance of its surface.
     pub(super) dyes: Vec<(Dye, Cow<'a, Curve>)>,
@@ -93,17 +93,18 @@ pub(super) enum Tint<'a> {
 }
 
 /// Most lights of different spectra that are judged; of more, those farthest apart.
-const MOST_LIGHTS: usize = 64;
+const MAX_LIGHTS: usize = 64;
 
 impl<'a> Survey<'a> {
     /// Surveys a scene. If `together`, all lanes are refracted by one index.
     pub(super) fn new(scene: &'a Scene<Curve>, together: bool) -> Self {
         let space = scene.film.color_space;
-        let (lights, light_numbers) = different(scene.lights.iter().map(|light| light.emission()), space);
-        let judged = farthest_apart(&lights, MOST_LIGHTS);
+        let (lights, light_indices) = distinct_lights(scene.lights.iter().map(|light| light.emission()), space);
+        let reference_lights = farthest_apart(&lights, MAX_LIGHTS);
         let (mut tints, mut dyes) = (Vec::new(), Vec::new());
-        let filters =
-            |quantity, curve: &'a Curve| curve.shades().into_iter().map(move |shade| Tint::Filter(quantity, shade));
+        let filters = |quantity, curve: &'a Curve| {
+            curve.representatives().into_iter().map(move |shade| Tint::Filter(quantity, shade))
+        };
         for (id, named) in scene.materials.iter().enumerate() {
             for material in named.material.with_parts() {
                 let index = material.clear_index().filter(|index| index.is_measured());
@@ -120,12 +121,12 @@ impl<'a> Survey<'a> {
                 }
                 match material {
                     Material::Diffuse(diffuse) => {
-                        let shades = diffuse.reflectance.shades();
+                        let shades = diffuse.reflectance.representatives();
                         dyes.extend(diffuse.fluorescence.iter().map(|dye| (dye.dye(), shades[0].clone())));
                         tints.extend(shades.into_iter().map(Tint::Diffuse));
                     }
                     Material::Plastic(plastic) => {
-                        let shades = plastic.reflectance.shades().into_iter();
+                        let shades = plastic.reflectance.representatives().into_iter();
                         tints.extend(shades.map(|shade| Tint::Coated(plastic, shade)));
                     }
                     Material::Thin(thin) => {
@@ -142,23 +143,23 @@ impl<'a> Survey<'a> {
                     }
                     Material::Mix(mix) => tints.extend(filters(Quantity::Share, &mix.amount)),
                     Material::Mask(mask) => tints.extend(filters(Quantity::Share, &mask.opacity)),
-                    Material::Emissive(lamp) => tints.extend(shown(&lamp.radiance)),
+                    Material::Emissive(lamp) => tints.extend(emission_tints(&lamp.radiance)),
                     Material::Polarizer(_) | Material::Retarder(_) => {}
                 }
             }
         }
         let upsampler = Upsampler::new(space);
-        Self { color_space: space, upsampler, lights, light_numbers, judged, tints, dyes }
+        Self { color_space: space, upsampler, lights, light_indices, reference_lights, tints, dyes }
     }
 
     /// Whether three numbers are all that is known of every color: numbers and `rgb` under the film's own white.
-    pub(super) fn is_plain(&self) -> bool {
+    pub(super) fn is_rgb_only(&self) -> bool {
         let white: Curve = CurveKind::Illuminant(Arc::new(self.color_space.white_light())).into();
         let white = Emission::new(&white, self.color_space);
         self.dyes.is_empty()
             && !self.has_fringes()
             && self.tints.iter().all(|tint| tint.curves().iter().all(|curve| !curve.is_measured()))
-            && self.lights.iter().all(|(curve, light)| !curve.is_measured() || light.has_shape_of(&white))
+            && self.lights.iter().all(|(curve, light)| !curve.is_measured() || light.is_proportional_to(&white))
     }
 
     /// Whether light interferes anywhere, which three numbers cannot describe.
@@ -168,15 +169,15 @@ impl<'a> Survey<'a> {
 
     /// Whether dyes absorb light that the eye does not see: more than one part in a thousand of what excites them.
     pub(super) fn needs_ultraviolet(&self) -> bool {
-        let invisible = |dye: &Excitable, light: &Emission| {
+        let excites_in_uv = |dye: &PreparedDye, light: &Emission| {
             let excited = dye.by(light);
             let smooth = visible::wavelengths().zip(&excited.smooth).filter(|part| part.0 < ULTRAVIOLET_NM);
             let lines = excited.lines.iter().filter(|line| line[0] < ULTRAVIOLET_NM);
-            let below: f64 = smooth.map(|part| *part.1).chain(lines.map(|line| line[1])).sum();
-            below > 1e-3 * excited.parts().sum::<f64>()
+            let uv_power: f64 = smooth.map(|part| *part.1).chain(lines.map(|line| line[1])).sum();
+            uv_power > 1e-3 * excited.parts().sum::<f64>()
         };
-        let mut dyes = self.dyes.iter().map(|(dye, _)| dye.excitable());
-        dyes.any(|dye| self.judged().any(|(_, light)| invisible(&dye, light)))
+        let mut dyes = self.dyes.iter().map(|(dye, _)| dye.prepared());
+        dyes.any(|dye| self.reference_lights().any(|(_, light)| excites_in_uv(&dye, light)))
     }
 
     /// Returns the light of the whole scene, if all lights have the same spectrum.
@@ -193,14 +194,14 @@ impl<'a> Survey<'a> {
     }
 
     /// Returns the lights by which models are judged.
-    pub(super) fn judged(&self) -> impl Iterator<Item = &(Curve, Emission)> {
-        self.judged.iter().map(|&light| &self.lights[light])
+    pub(super) fn reference_lights(&self) -> impl Iterator<Item = &(Curve, Emission)> {
+        self.reference_lights.iter().map(|&light| &self.lights[light])
     }
 
     /// Returns what shines on surfaces, that is, the lights by which models are judged and the dyes; and the dyes
     /// alone.
-    pub(super) fn shining(&self) -> (Vec<Emission>, Vec<Dye>) {
-        let lights = self.judged().map(|(_, light)| light.clone());
+    pub(super) fn emitters(&self) -> (Vec<Emission>, Vec<Dye>) {
+        let lights = self.reference_lights().map(|(_, light)| light.clone());
         let dyes = self.dyes.iter().map(|(dye, _)| dye);
         (lights.chain(dyes.clone().map(|dye| dye.shines(self.color_space))).collect(), dyes.cloned().collect())
     }
@@ -225,9 +226,9 @@ impl<'a> Survey<'a> {
     }
 
     pub(super) fn smooth(&self, most: usize) -> Vec<&Tint<'a>> {
-        let mut chosen = self.thickest_films(FILMS);
-        let others = |tint: &Tint| !tint.is_scattering() && !tint.is_flat() && !tint.has_fringes();
-        chosen.extend(self.farthest_from_gray(most, others));
+        let mut chosen = self.thickest_films(MAX_FILMS);
+        let is_smooth_tint = |tint: &Tint| !tint.is_scattering() && !tint.is_flat() && !tint.has_fringes();
+        chosen.extend(self.farthest_from_gray(most, is_smooth_tint));
         chosen
     }
 
@@ -249,11 +250,11 @@ impl<'a> Survey<'a> {
         self.farthest_from_gray(most, |tint| matches!(tint, Tint::Surface { .. }))
     }
 
-    fn farthest_from_gray(&self, most: usize, which: impl Fn(&Tint) -> bool) -> Vec<&Tint<'a>> {
+    fn farthest_from_gray(&self, most: usize, predicate: impl Fn(&Tint) -> bool) -> Vec<&Tint<'a>> {
         let mut chosen: Vec<(f64, &Tint)> = self
             .tints
             .iter()
-            .filter(|tint| which(tint))
+            .filter(|tint| predicate(tint))
             .map(|tint| {
                 let values = tint.at(&[420.0, 450.0, 480.0, 510.0, 540.0, 570.0, 600.0, 630.0, 660.0], &self.upsampler);
                 let (low, high) = values.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &x| (l.min(x), h.max(x)));
@@ -269,7 +270,7 @@ impl<'a> Survey<'a> {
 const ULTRAVIOLET_NM: f64 = 390.0;
 
 /// Most films and plates by which models are judged; each film counts as it reflects and as it transmits.
-const FILMS: usize = 4;
+const MAX_FILMS: usize = 4;
 
 /// Returns how thick the thickest body of a material is, measured by the smallest side of a body's bounds.
 fn thickness(scene: &Scene<Curve>, material: u32) -> f64 {
@@ -307,25 +308,25 @@ impl Tint<'_> {
     pub(super) fn at(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<f64> {
         // Sums over 1 nm have the fringes of bands of 1 nm.
         let waves: Vec<_> = wavelengths_nm.iter().map(|&nm| [nm, 1.0 / nm]).collect();
-        self.combine(&waves, |quantity, curve| {
+        self.evaluate(&waves, |quantity, curve| {
             let reader = curve.reader(quantity, upsampler);
             wavelengths_nm.iter().map(|&nm| reader(nm)).collect()
         })
     }
 
     /// Returns what is left of the light in the lanes of a basis.
-    pub(super) fn on(&self, basis: &Basis) -> Vec<f64> {
+    pub(super) fn in_basis(&self, basis: &Basis) -> Vec<f64> {
         let basis = match self {
             Self::Surface { together: true, .. } => Cow::Owned(basis.clone().kept_together()),
             _ => Cow::Borrowed(basis),
         };
         let waves: Vec<_> = basis.waves().of_fixed_lanes().collect();
-        self.combine(&waves, |quantity, curve| basis.tabulate(quantity, curve).bins().to_vec())
+        self.evaluate(&waves, |quantity, curve| basis.tabulate(quantity, curve).bins().to_vec())
     }
 
     /// Returns what is left of light at some wavelengths, given in nm with the relative widths of their bands. `read`
     /// returns the values of a curve at all of them.
-    fn combine(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
+    fn evaluate(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         match self {
             Self::Diffuse(curve) => read(Quantity::Reflectance, curve),
             Self::Coated(plastic, reflectance) => {
@@ -337,8 +338,8 @@ impl Tint<'_> {
                 read(Quantity::Reflectance, reflectance).into_iter().zip(index).map(coated).collect()
             }
             Self::Filter(quantity, curve) => read(*quantity, curve),
-            Self::Film(film) => film.left(waves, read),
-            Self::Plate(plate) => between_polarizers(*plate, waves),
+            Self::Film(film) => film.remaining_light(waves, read),
+            Self::Plate(plate) => plate_transmittance(*plate, waves),
             Self::Metal(metal, cos) => {
                 let (n, k) = (read(Quantity::MetalIndex, &metal.n), read(Quantity::MetalExtinction, &metal.k));
                 let reflected = n.into_iter().zip(k).map(|(n, k)| match *cos {
@@ -365,8 +366,9 @@ impl Tint<'_> {
 }
 
 /// Returns the colors of a shining image or pattern, as filters of its white that are half as bright.
-fn shown(radiance: &Curve) -> Vec<Tint<'_>> {
-    let colors = radiance.shades().into_iter().filter(|_| radiance.varies()).filter_map(|shade| shade.kind.rgb());
+fn emission_tints(radiance: &Curve) -> Vec<Tint<'_>> {
+    let colors =
+        radiance.representatives().into_iter().filter(|_| radiance.varies()).filter_map(|shade| shade.kind.rgb());
     let filter = |rgb: [f64; 3]| {
         let most = 2.0 * rgb.into_iter().fold(0.0, f64::max);
         let half = CurveKind::Rgb(rgb.map(|x| x / most));

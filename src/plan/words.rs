@@ -14,20 +14,20 @@ pub(super) fn percent(share: f64) -> String {
 }
 
 /// Formats two shares, the second a limit, with enough digits to show on which side of it the first lies.
-pub(super) fn against(share: f64, limit: f64) -> [String; 2] {
-    let said = [share, limit].map(percent);
+pub(super) fn percent_and_limit(share: f64, limit: f64) -> [String; 2] {
+    let formatted = [share, limit].map(percent);
     let longer = (2..6).map(|digits| [share, limit].map(|x| format!("{:.digits$} %", 100.0 * x)));
-    let is_clear = |said: &[String; 2]| said[0] != said[1];
-    std::iter::once(said.clone()).chain(longer).find(is_clear).unwrap_or(said)
+    let is_clear = |formatted: &[String; 2]| formatted[0] != formatted[1];
+    std::iter::once(formatted.clone()).chain(longer).find(is_clear).unwrap_or(formatted)
 }
 
 /// Formats the most by which something may be off; beyond all of it, the exact number tells nothing.
-pub(super) fn at_most(bound: f64) -> String {
+pub(super) fn percent_bound(bound: f64) -> String {
     if bound > 1.0 { "over 100 %".into() } else { percent(bound) }
 }
 
 /// Formats a count as people say it.
-pub(super) fn in_number(count: u64) -> String {
+pub(super) fn format_count(count: u64) -> String {
     match count as f64 {
         n if n < 1e4 => format!("{count}"),
         n if n < 1e6 => format!("{:.0} thousand", n / 1e3),
@@ -36,11 +36,11 @@ pub(super) fn in_number(count: u64) -> String {
 }
 
 /// Describes how many times as long the same error takes, that of the image and that of its pixels.
-pub(super) fn as_long(times: Effort) -> String {
+pub(super) fn describe_effort(times: Effort) -> String {
     let number = |times: f64| match times {
         less if less < 0.995 => format!("{less:.2}"),
         few if few < 9.95 => format!("{few:.1}"),
-        many => in_number(many.round() as u64),
+        many => format_count(many.round() as u64),
     };
     let of_pixels = number(times.of_pixels);
     match times.of_whole.map(number) {
@@ -62,7 +62,7 @@ pub(super) fn highlights(found: &[Highlight]) -> Option<String> {
 }
 
 /// Formats a time as people say it.
-pub(super) fn in_words(seconds: f64) -> String {
+pub(super) fn format_duration(seconds: f64) -> String {
     match seconds {
         s if s < 1.0 => "a second or less".into(),
         s if s < 1.5 => "1 second".into(),
@@ -74,15 +74,15 @@ pub(super) fn in_words(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{against, as_long, at_most, in_words, percent};
+    use super::{describe_effort, format_duration, percent, percent_and_limit, percent_bound};
     use crate::trace::Effort;
 
     #[test]
     fn an_effort_is_that_of_pixels_unless_the_whole_is_asked_for() {
-        let said = |of_pixels, of_whole| as_long(Effort { of_pixels, of_whole });
-        assert_eq!(said(0.902, None), "the same error would take about 0.90 times as long");
+        let formatted = |of_pixels, of_whole| describe_effort(Effort { of_pixels, of_whole });
+        assert_eq!(formatted(0.902, None), "the same error would take about 0.90 times as long");
         assert_eq!(
-            said(19_600.0, Some(1.02)),
+            formatted(19_600.0, Some(1.02)),
             "the same error would take about 1.0 times as long, that of each pixel 20 thousand times"
         );
     }
@@ -95,20 +95,21 @@ mod tests {
 
     #[test]
     fn what_is_above_a_limit_is_seen_to_be() {
-        assert_eq!(against(0.037, 0.005), ["3.7 %", "0.5 %"]);
-        assert_eq!(against(0.00523, 0.005), ["0.52 %", "0.50 %"]);
-        assert_eq!(against(0.005, 0.005), ["0.5 %", "0.5 %"]);
+        assert_eq!(percent_and_limit(0.037, 0.005), ["3.7 %", "0.5 %"]);
+        assert_eq!(percent_and_limit(0.00523, 0.005), ["0.52 %", "0.50 %"]);
+        assert_eq!(percent_and_limit(0.005, 0.005), ["0.5 %", "0.5 %"]);
     }
 
     #[test]
     fn a_bound_beyond_everything_is_no_number() {
-        assert_eq!([0.16, 1.0, 1.79].map(at_most), ["16 %", "100 %", "over 100 %"]);
+        assert_eq!([0.16, 1.0, 1.79].map(percent_bound), ["16 %", "100 %", "over 100 %"]);
     }
 
     #[test]
-    fn one_second_is_no_seconds() {
-        let times = [0.4, 1.0, 1.49, 1.5, 119.0, 125.0, 7300.0].map(in_words);
-        let said = ["a second or less", "1 second", "1 second", "2 seconds", "119 seconds", "2 minutes", "2.0 hours"];
-        assert_eq!(times, said);
+    fn one_second_is_written_in_the_singular() {
+        let times = [0.4, 1.0, 1.49, 1.5, 119.0, 125.0, 7300.0].map(format_duration);
+        let formatted =
+            ["a second or less", "1 second", "1 second", "2 seconds", "119 seconds", "2 minutes", "2.0 hours"];
+        assert_eq!(times, formatted);
     }
 }

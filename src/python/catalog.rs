@@ -41,7 +41,7 @@ pub(super) struct Tabulated {
 }
 
 /// Returns a value for each wavelength in nm, given as the bytes of an array of 64-bit floats.
-fn each(bytes: &[u8], value: impl Fn(f64) -> f64) -> Plane {
+fn map_wavelengths(bytes: &[u8], value: impl Fn(f64) -> f64) -> Plane {
     let values: Vec<f64> = bytes.as_chunks().0.iter().map(|nm| value(f64::from_ne_bytes(*nm))).collect();
     let shape = vec![values.len()];
     Plane::owned(values, shape)
@@ -51,7 +51,7 @@ fn each(bytes: &[u8], value: impl Fn(f64) -> f64) -> Plane {
 impl Glass {
     #[new]
     fn new(name: &str) -> PyResult<Self> {
-        let glass = data::glass(name).ok_or_else(|| unknown("glass", name))?;
+        let glass = data::glass(name).ok_or_else(|| unknown_name("glass", name))?;
         let entry = Entry { name: glass.key, source: glass.source, range_nm: glass.range_nm };
         Ok(Self { entry, glass })
     }
@@ -68,12 +68,12 @@ impl Glass {
     }
 
     fn index(&self, nm: &[u8]) -> Plane {
-        each(nm, |nm| self.glass.index(nm))
+        map_wavelengths(nm, |nm| self.glass.index(nm))
     }
 
     /// Returns the extinction coefficient at each wavelength. NaN if it is not known.
     fn extinction(&self, nm: &[u8]) -> Plane {
-        each(nm, |nm| self.glass.extinction(nm).unwrap_or(f64::NAN))
+        map_wavelengths(nm, |nm| self.glass.extinction(nm).unwrap_or(f64::NAN))
     }
 }
 
@@ -81,18 +81,18 @@ impl Glass {
 impl Metal {
     #[new]
     fn new(name: &str) -> PyResult<Self> {
-        let metal = data::metal(name).ok_or_else(|| unknown("metal", name))?;
+        let metal = data::metal(name).ok_or_else(|| unknown_name("metal", name))?;
         let [first, last] = [metal.samples.first(), metal.samples.last()].map(|end| end.map_or(0.0, |end| end[0]));
         let entry = Entry { name: metal.name, source: metal.source, range_nm: (first, last) };
         Ok(Self { entry, metal })
     }
 
     fn n(&self, nm: &[u8]) -> Plane {
-        each(nm, |nm| self.metal.nk(nm)[0])
+        map_wavelengths(nm, |nm| self.metal.nk(nm)[0])
     }
 
     fn k(&self, nm: &[u8]) -> Plane {
-        each(nm, |nm| self.metal.nk(nm)[1])
+        map_wavelengths(nm, |nm| self.metal.nk(nm)[1])
     }
 }
 
@@ -105,13 +105,13 @@ impl Tabulated {
             "illuminant" => data::illuminant(name),
             _ => data::reflectance(name),
         };
-        let grid = grid.ok_or_else(|| unknown(kind, name))?;
+        let grid = grid.ok_or_else(|| unknown_name(kind, name))?;
         let entry = Entry { name: grid.name, source: grid.source, range_nm: grid.range_nm().into() };
         Ok(Self { entry, grid })
     }
 
     fn at(&self, nm: &[u8]) -> Plane {
-        each(nm, |nm| self.grid.at(nm))
+        map_wavelengths(nm, |nm| self.grid.at(nm))
     }
 }
 
@@ -133,7 +133,7 @@ pub(super) fn name_of(value: &Bound<'_, PyAny>) -> Option<&'static str> {
     entry.cast::<Entry>().ok().map(|entry| entry.get().name)
 }
 
-fn unknown(kind: &str, name: &str) -> PyErr {
+fn unknown_name(kind: &str, name: &str) -> PyErr {
     let full = names(kind);
     let bare = full.iter().map(|name| data::bare(name));
     let near = match kind {

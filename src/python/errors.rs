@@ -16,10 +16,10 @@ pyo3::import_exception!(abbe._errors, SceneError);
 type Mistake = (Option<String>, String, Option<String>, String, usize, usize);
 
 /// The system's error number for a missing file.
-const NO_SUCH_FILE: i32 = 2;
+const ENOENT: i32 = 2;
 
 /// Converts an error to an exception.
-pub(super) fn raised(error: Error) -> PyErr {
+pub(super) fn to_exception(error: Error) -> PyErr {
     match error {
         Error::Scene(ref mistakes) => {
             let mut lines = Lines::default();
@@ -31,8 +31,8 @@ pub(super) fn raised(error: Error) -> PyErr {
         }
         Error::Io { doing, path, source } => match source.raw_os_error() {
             Some(number) => {
-                let told = source.to_string().replace(&format!(" (os error {number})"), "");
-                PyOSError::new_err((number, told, path.into_os_string()))
+                let reason = source.to_string().replace(&format!(" (os error {number})"), "");
+                PyOSError::new_err((number, reason, path.into_os_string()))
             }
             None => PyOSError::new_err(format!("cannot {doing} {}: {source}", path.display())),
         },
@@ -43,13 +43,13 @@ pub(super) fn raised(error: Error) -> PyErr {
 }
 
 /// Converts an error of reading a file, which may not exist, to an exception.
-pub(super) fn raised_of(path: &Path, error: Error) -> PyErr {
+pub(super) fn to_file_exception(path: &Path, error: Error) -> PyErr {
     match error {
         Error::Arguments { message, help } if !path.exists() => {
             let help = help.map_or(String::new(), |help| format!(" ({help})"));
-            PyFileNotFoundError::new_err((NO_SUCH_FILE, message + &help, path.as_os_str().to_owned()))
+            PyFileNotFoundError::new_err((ENOENT, message + &help, path.as_os_str().to_owned()))
         }
-        error => raised(error),
+        error => to_exception(error),
     }
 }
 
@@ -59,7 +59,7 @@ pub(super) fn refuse<T>(message: impl Into<String>, help: &str) -> PyResult<T> {
 }
 
 /// Returns an exception for an object that cannot be sent to another process or kept as bytes, with help on what can.
-pub(super) fn no_pickle<T>(what: &str, help: &str) -> PyResult<T> {
+pub(super) fn refuse_pickle<T>(what: &str, help: &str) -> PyResult<T> {
     Err(PyTypeError::new_err(format!("{what} cannot be pickled: {help}")))
 }
 
@@ -67,7 +67,7 @@ pub(super) fn no_pickle<T>(what: &str, help: &str) -> PyResult<T> {
 ///
 /// # Errors
 /// If the file has another ending, or its folder cannot be created.
-pub(super) fn output(path: &Path, ending: &str) -> PyResult<()> {
+pub(super) fn prepare_output(path: &Path, ending: &str) -> PyResult<()> {
     if !path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending)) {
         let message = match path.as_os_str().is_empty() {
             true => "the file to write has no name".to_owned(),
@@ -79,14 +79,14 @@ pub(super) fn output(path: &Path, ending: &str) -> PyResult<()> {
     match create_dir_all(folder) {
         // A file in place of the folder is reported when the image is written.
         Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-            Err(raised(Error::Io { doing: "make", path: folder.to_owned(), source: error }))
+            Err(to_exception(Error::Io { doing: "make", path: folder.to_owned(), source: error }))
         }
         _ => Ok(()),
     }
 }
 
 /// Returns an exception for something that should never happen.
-pub(super) fn defect(what: &str) -> PyErr {
+pub(super) fn bug_error(what: &str) -> PyErr {
     RenderError::new_err((format!("this is a bug in Abbe: {what}"), None::<String>))
 }
 

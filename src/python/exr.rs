@@ -10,7 +10,7 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::errors::{no_pickle, output, raised, raised_of, refuse};
+use super::errors::{prepare_output, refuse, refuse_pickle, to_exception, to_file_exception};
 use super::image::Image;
 use super::options::stops;
 use super::plane::Plane;
@@ -32,7 +32,7 @@ impl Exr {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let read = path.clone();
-        let file = work::run(py, move || ExrFile::read(&read))?.map_err(|error| raised_of(&path, error))?;
+        let file = work::run(py, move || ExrFile::read(&read))?.map_err(|error| to_file_exception(&path, error))?;
         Ok(Self { file: Arc::new(file), path })
     }
 
@@ -41,7 +41,7 @@ impl Exr {
     fn of(py: Python<'_>, image: &Image) -> PyResult<Self> {
         let (image, path) = (image.image.clone(), PathBuf::from(IMAGE));
         let file = move || -> Result<ExrFile> { ExrFile::of_bytes(&image.exr_bytes()?.0, Path::new(IMAGE)) };
-        Ok(Self { file: Arc::new(work::run(py, file)?.map_err(raised)?), path })
+        Ok(Self { file: Arc::new(work::run(py, file)?.map_err(to_exception)?), path })
     }
 
     /// The names of the layers.
@@ -72,11 +72,11 @@ impl Exr {
     #[getter]
     fn attributes(&self) -> Vec<(String, String)> {
         let numbers = |numbers: &[f32]| numbers.iter().map(f32::to_string).collect::<Vec<_>>().join(" ");
-        let of_part = |part: &Part| {
+        let part_attributes = |part: &Part| {
             let camera = part.camera.map(|matrix| ("worldToCamera".to_owned(), numbers(&matrix)));
             part.attributes.iter().cloned().chain(camera).collect::<Vec<_>>()
         };
-        self.file.parts.iter().flat_map(of_part).collect()
+        self.file.parts.iter().flat_map(part_attributes).collect()
     }
 
     /// Returns a layer, or a channel by its full name.
@@ -86,26 +86,26 @@ impl Exr {
             Err(Error::Arguments { message, help }) => {
                 Err(PyKeyError::new_err(help.map_or(message.clone(), |help| format!("{message}: {help}"))))
             }
-            Err(error) => Err(raised(error)),
+            Err(error) => Err(to_exception(error)),
         }
     }
 
     /// Returns an 8-bit PNG, brightened by 2^`exposure`.
     fn png(&self, py: Python<'_>, exposure: f64) -> PyResult<Vec<u8>> {
         let (file, path, stops) = (self.file.clone(), self.path.clone(), stops(exposure)?);
-        work::run(py, move || picture(&file, &path, stops)?.png())?.map_err(raised)
+        work::run(py, move || picture(&file, &path, stops)?.png())?.map_err(to_exception)
     }
 
     /// Writes an 8-bit PNG, brightened by 2^`exposure`.
     fn write_png(&self, py: Python<'_>, path: PathBuf, exposure: f64) -> PyResult<()> {
-        output(&path, "png")?;
+        prepare_output(&path, "png")?;
         let (file, of, stops) = (self.file.clone(), self.path.clone(), stops(exposure)?);
-        work::run(py, move || picture(&file, &of, stops)?.write_png(&path))?.map_err(raised)
+        work::run(py, move || picture(&file, &of, stops)?.write_png(&path))?.map_err(to_exception)
     }
 
     /// Raises `TypeError`, because an image cannot be pickled.
     fn __reduce__(&self) -> PyResult<()> {
-        no_pickle("an image", "send its arrays, such as image.rgb, or the path of its file")
+        refuse_pickle("an image", "send its arrays, such as image.rgb, or the path of its file")
     }
 
     /// Returns the same object, because it is immutable.
@@ -165,7 +165,7 @@ pub(super) fn diff<'py>(
         let [a, b] = files.each_ref().map(|file| &**file);
         compare([a, b], layer.as_deref(), names.each_ref().map(String::as_str))
     };
-    let found = work::run(py, compared)?.map_err(raised)?;
+    let found = work::run(py, compared)?.map_err(to_exception)?;
     fields(py, found, tolerance)
 }
 

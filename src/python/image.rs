@@ -10,7 +10,7 @@ use abbe::nearest;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
-use super::errors::{no_pickle, output, raised};
+use super::errors::{prepare_output, refuse_pickle, to_exception};
 use super::options::stops;
 use super::plane::{Place, Plane};
 use super::work;
@@ -24,7 +24,7 @@ pub(super) struct Image {
 }
 
 /// The layers that every image has.
-const ALWAYS: [&str; 3] = [BEAUTY, "A", "Z"];
+const STANDARD_LAYERS: [&str; 3] = [BEAUTY, "A", "Z"];
 
 #[pymethods]
 impl Image {
@@ -43,7 +43,7 @@ impl Image {
     /// The names of the layers.
     #[getter]
     fn layers(&self) -> Vec<String> {
-        let names = ALWAYS.iter().map(|name| (*name).to_owned());
+        let names = STANDARD_LAYERS.iter().map(|name| (*name).to_owned());
         names.chain(self.image.film().layers.iter().map(|layer| layer.name.clone())).collect()
     }
 
@@ -55,7 +55,9 @@ impl Image {
     /// Returns a layer, or a channel by its name in the file.
     fn plane(&self, name: &str) -> PyResult<Plane> {
         let film = self.image.film();
-        let place = of_pixels(film, name).or_else(|| of_layers(film, name)).ok_or_else(|| self.missing(name))?;
+        let place = standard_layer(film, name)
+            .or_else(|| requested_layer(film, name))
+            .ok_or_else(|| self.unknown_layer(name))?;
         Ok(Plane::of(self.image.clone(), place))
     }
 
@@ -88,34 +90,34 @@ impl Image {
 
     /// Writes the linear image. Returns the number of values that were too large for 16 bits.
     fn write_exr(&self, py: Python<'_>, path: PathBuf) -> PyResult<u64> {
-        output(&path, "exr")?;
+        prepare_output(&path, "exr")?;
         let image = self.image.clone();
-        work::run(py, move || image.write_exr(path))?.map_err(raised)
+        work::run(py, move || image.write_exr(path))?.map_err(to_exception)
     }
 
     /// Writes the spectra of all pixels.
     fn write_spectral_exr(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        output(&path, "exr")?;
+        prepare_output(&path, "exr")?;
         let image = self.image.clone();
-        work::run(py, move || image.write_spectral_exr(path))?.map_err(raised)
+        work::run(py, move || image.write_spectral_exr(path))?.map_err(to_exception)
     }
 
     /// Returns an 8-bit PNG, brightened by 2^`exposure`.
     fn png(&self, py: Python<'_>, exposure: f64) -> PyResult<Vec<u8>> {
         let (image, stops) = (self.image.clone(), stops(exposure)?);
-        work::run(py, move || image.png_bytes(stops))?.map_err(raised)
+        work::run(py, move || image.png_bytes(stops))?.map_err(to_exception)
     }
 
     /// Writes an 8-bit PNG, brightened by 2^`exposure`.
     fn write_png(&self, py: Python<'_>, path: PathBuf, exposure: f64) -> PyResult<()> {
-        output(&path, "png")?;
+        prepare_output(&path, "png")?;
         let (image, stops) = (self.image.clone(), stops(exposure)?);
-        work::run(py, move || image.write_png(path, stops))?.map_err(raised)
+        work::run(py, move || image.write_png(path, stops))?.map_err(to_exception)
     }
 
     /// Raises `TypeError`, because an image cannot be pickled.
     fn __reduce__(&self) -> PyResult<()> {
-        no_pickle("an image", "send its arrays, such as image.rgb, or write it to a file")
+        refuse_pickle("an image", "send its arrays, such as image.rgb, or write it to a file")
     }
 
     /// Returns the same object, because it is immutable.
@@ -126,13 +128,13 @@ impl Image {
 
 impl Image {
     /// Returns the exception for a layer that does not exist.
-    fn missing(&self, name: &str) -> PyErr {
+    fn unknown_layer(&self, name: &str) -> PyErr {
         let layers = self.layers();
         let layer = name.split_once('.').map_or(name, |(layer, _)| layer);
-        let known = layers.iter().map(String::as_str).chain(Layer::NAMES.map(|(name, _)| name));
+        let candidates = layers.iter().map(String::as_str).chain(Layer::NAMES.map(|(name, _)| name));
         // Ranks of a Cryptomatte have a number after its name.
         let rank = layers.iter().find(|rank| rank.starts_with(layer)).map(String::as_str);
-        let help = match rank.or_else(|| nearest(layer, known)) {
+        let help = match rank.or_else(|| nearest(layer, candidates)) {
             Some(near) if layers.iter().any(|layer| layer == near) => format!("did you mean {near:?}? "),
             Some(near) => format!("ask for it with layers=[{near:?}]; "),
             None => String::new(),
@@ -142,7 +144,7 @@ impl Image {
 }
 
 /// Finds a layer or channel that every image has.
-fn of_pixels(film: &Film, name: &str) -> Option<Place> {
+fn standard_layer(film: &Film, name: &str) -> Option<Place> {
     let rgb = offset_of!(Pixel, rgb);
     let (start, channels) = match name {
         BEAUTY => (rgb, 3),
@@ -153,33 +155,33 @@ fn of_pixels(film: &Film, name: &str) -> Option<Place> {
         "Z" => (offset_of!(Pixel, depth), 1),
         _ => return None,
     };
-    Some(of_each(film, &film.pixels, size_of::<Pixel>(), start, channels))
+    Some(strided(film, &film.pixels, size_of::<Pixel>(), start, channels))
 }
 
 /// Finds a requested layer, or one of its channels.
-fn of_layers(film: &Film, name: &str) -> Option<Place> {
+fn requested_layer(film: &Film, name: &str) -> Option<Place> {
     let layer = |name: &str| film.layers.iter().find(|layer| layer.name == name);
     let (found, channels) = match layer(name) {
         Some(found) => (found, 0..found.layer.channels().len()),
         None => {
             let (name, channel) = name.rsplit_once('.')?;
             let found = layer(name)?;
-            let number = found.layer.channels().iter().position(|known| *known == channel)?;
+            let number = found.layer.channels().iter().position(|candidates| *candidates == channel)?;
             (found, number..number + 1)
         }
     };
     Some(packed(film, &found.values, found.layer.channels().len(), channels))
 }
 
-/// Returns the place of the numbers `some` of each pixel, which has `each` of them.
-fn packed(film: &Film, values: &[f32], each: usize, some: Range<usize>) -> Place {
+/// Returns the place of the numbers `range` of each pixel, which has `per_pixel` of them.
+fn packed(film: &Film, values: &[f32], per_pixel: usize, range: Range<usize>) -> Place {
     let size = size_of::<f32>();
-    of_each(film, values, each * size, some.start * size, some.len())
+    strided(film, values, per_pixel * size, range.start * size, range.len())
 }
 
 /// Returns the place of `channels` consecutive numbers of each pixel, which begin at `start` of the `step` bytes of the
 /// pixel.
-fn of_each<T>(film: &Film, whole: &[T], step: usize, start: usize, channels: usize) -> Place {
+fn strided<T>(film: &Film, whole: &[T], step: usize, start: usize, channels: usize) -> Place {
     let (mut shape, mut strides) =
         (vec![film.height as usize, film.width as usize], vec![film.width as usize * step, step]);
     if channels > 1 {

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
 
-use super::errors::{defect, for_python, raised, refuse};
+use super::errors::{bug_error, for_python, refuse, to_exception};
 use super::image::Image;
 use super::options::{options, time};
 use super::scene::Scene;
@@ -35,7 +35,7 @@ pub(super) fn plan(py: Python<'_>, scene: &Scene, asked: &Bound<'_, PyDict>) -> 
         options.apply(&mut scene)?;
         json(&PlanAccount::new(&abbe::plan::plan(&scene)))
     };
-    Ok((work::run(py, planned)?.map_err(raised)?, threads))
+    Ok((work::run(py, planned)?.map_err(to_exception)?, threads))
 }
 
 /// Renders a scene. Calls `progress` with the work done, all work, and the seconds since the render began.
@@ -62,7 +62,7 @@ pub(super) fn render(
     let rendered = work.finish(py, &mut || match &progress {
         Some(progress) if Instant::now() >= next && state.has_begun() => {
             next = Instant::now() + PERIOD;
-            state.tell(progress)
+            state.call(progress)
         }
         _ => Ok(()),
     });
@@ -72,8 +72,9 @@ pub(super) fn render(
         let patience = if keeps && state.has_begun() { Duration::MAX } else { PATIENCE };
         let _ = work.wait(py, patience);
     });
-    let image = rendered?.map_err(raised)?.ok_or_else(|| defect("a render stopped although nobody stopped it"))?;
-    progress.map_or(Ok(()), |progress| state.tell(&progress))?;
+    let image =
+        rendered?.map_err(to_exception)?.ok_or_else(|| bug_error("a render stopped although nobody stopped it"))?;
+    progress.map_or(Ok(()), |progress| state.call(&progress))?;
     Ok(image)
 }
 
@@ -99,7 +100,7 @@ impl State {
         self.began.get().is_some()
     }
 
-    fn tell(&self, progress: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn call(&self, progress: &Bound<'_, PyAny>) -> PyResult<()> {
         let seconds = self.began.get().map_or(0.0, |began| began.elapsed().as_secs_f64());
         progress.call1((self.done.load(Relaxed), self.work.load(Relaxed), seconds)).map(drop)
     }
@@ -130,18 +131,18 @@ struct Account<'a> {
 impl Job {
     /// Returns the image, or none if the render was stopped.
     fn run(self) -> Result<Option<Image>> {
-        let kept = self.checkpoint.as_ref();
-        kept.map_or(Ok(()), Checkpoint::spare)?;
+        let checkpoint = self.checkpoint.as_ref();
+        checkpoint.map_or(Ok(()), Checkpoint::check_overwrite)?;
         let mut rendering = Rendering::new(&self.scene, &self.options)?;
         if self.state.stop.load(Relaxed) {
             // Nobody waits any longer, and there is nothing to save.
             return Ok(None);
         }
-        kept.map_or(Ok(()), |kept| kept.go_on(&mut rendering))?;
+        checkpoint.map_or(Ok(()), |checkpoint| checkpoint.resume_render(&mut rendering))?;
         let began = self.state.begin(rendering.done(), rendering.work());
         let mut warnings: Vec<_> = self.scene.warnings.iter().map(|warning| for_python(warning)).collect();
         let is_finished = self.advance(&mut rendering, &mut warnings)?;
-        let saved = kept.map_or(Ok(()), |kept| rendering.save(&kept.path));
+        let saved = checkpoint.map_or(Ok(()), |checkpoint| rendering.save(&checkpoint.path));
         if !is_finished {
             return saved.map(|()| None);
         }
@@ -161,7 +162,7 @@ impl Job {
         let count = |more| {
             state.done.fetch_add(more, Relaxed);
         };
-        let mut timer = Timer::new(self.checkpoint.as_ref().map(|kept| kept.every));
+        let mut timer = Timer::new(self.checkpoint.as_ref().map(|checkpoint| checkpoint.every));
         loop {
             let advance = rendering.advance_until(&count, &|| state.stop.load(Relaxed) || timer.is_due());
             state.work.store(rendering.work(), Relaxed);
@@ -171,9 +172,9 @@ impl Job {
             if state.stop.load(Relaxed) {
                 return Ok(false);
             }
-            if let Some(kept) = self.checkpoint.as_ref().filter(|_| advance == Advance::Stopped) {
+            if let Some(checkpoint) = self.checkpoint.as_ref().filter(|_| advance == Advance::Stopped) {
                 // The render is worth more than a failed save, so it continues.
-                let saved = timer.run(|| rendering.save(&kept.path));
+                let saved = timer.run(|| rendering.save(&checkpoint.path));
                 warnings.extend(saved.err().map(|error| format!("the render went on, but {error}")));
             }
         }
@@ -182,7 +183,7 @@ impl Job {
 
 impl Checkpoint {
     /// Refuses to overwrite the checkpoint of an earlier run, or a file that is no checkpoint.
-    fn spare(&self) -> Result<()> {
+    fn check_overwrite(&self) -> Result<()> {
         let name = self.path.display();
         if self.path.is_dir() {
             return Error::refuse(
@@ -210,7 +211,7 @@ impl Checkpoint {
     }
 
     /// Resumes from the checkpoint of an earlier run, if requested and if there is one.
-    fn go_on(&self, rendering: &mut Rendering) -> Result<()> {
+    fn resume_render(&self, rendering: &mut Rendering) -> Result<()> {
         if !self.resume || !self.path.exists() {
             return Ok(());
         }

@@ -9,11 +9,11 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
-use super::errors::{for_python, no_pickle, raised, raised_of, refuse};
+use super::errors::{for_python, refuse, refuse_pickle, to_exception, to_file_exception};
 use super::{text, work};
 
 /// Identifies mistakes in settings by their keys. Each line of the text `SETTINGS` is a setting.
-fn by_key(error: Error, keys: &[String]) -> Error {
+fn with_setting_keys(error: Error, keys: &[String]) -> Error {
     let Error::Scene(mut mistakes) = error else { return error };
     let is_of_setting = |mistake: &&mut Diagnostic| mistake.file.as_os_str() == SETTINGS;
     for mistake in mistakes.iter_mut().filter(is_of_setting) {
@@ -48,13 +48,13 @@ impl Scene {
             given.push(format!("{key}={}", text::value(&key, &value)?));
             keys.push(key);
         }
-        let raised = |error| raised(by_key(error, &keys));
+        let to_exception = |error| to_exception(with_setting_keys(error, &keys));
         let scene = match source.cast::<PyMapping>() {
             Ok(table) => {
                 let path = folder.join("scene.toml");
                 let (text, rows) = text::scene(table, &path)?;
                 let source = Source { text, path };
-                work::run(py, move || source.compile_written(&given, rows))?.map_err(raised)
+                work::run(py, move || source.compile_written(&given, rows))?.map_err(to_exception)
             }
             Err(_) => {
                 let Ok(path) = source.extract::<PathBuf>() else {
@@ -64,7 +64,7 @@ impl Scene {
                 };
                 let read = path.clone();
                 work::run(py, move || Source::read(&read)?.compile_with(&given))?
-                    .map_err(|error| raised_of(&path, by_key(error, &keys)))
+                    .map_err(|error| to_file_exception(&path, with_setting_keys(error, &keys)))
             }
         };
         Ok(Self(Arc::new(scene?)))
@@ -90,7 +90,7 @@ impl Scene {
 
     /// Raises `TypeError`, because a scene cannot be pickled.
     fn __reduce__(&self) -> PyResult<()> {
-        no_pickle("a scene", "send the path or the dict that it is made from")
+        refuse_pickle("a scene", "send the path or the dict that it is made from")
     }
 
     /// Returns the same object, because it is immutable.

@@ -10,10 +10,10 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
 
 use super::catalog;
-use super::errors::raised;
+use super::errors::to_exception;
 
 /// The maximum depth of nested dicts and lists: more than a scene has, and less than TOML may have.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// Returns the text of a scene, and the arrays of its meshes beside it.
 ///
@@ -30,7 +30,7 @@ pub(super) fn scene(table: &Bound<'_, PyMapping>, file: &Path) -> PyResult<(Stri
 
 /// The long lists of a mesh: one of point numbers, and those of coordinates.
 const FACES: &str = "faces";
-const REAL: [&str; 3] = ["points", "normals", "uv"];
+const COORDINATE_LISTS: [&str; 3] = ["points", "normals", "uv"];
 
 /// Returns the text of a single value, as it is written after `KEY=`.
 ///
@@ -65,7 +65,7 @@ impl Writer {
             return Ok((self.text, self.rows));
         }
         let file = |mistake| Diagnostic { file: file.to_owned(), ..mistake };
-        Err(raised(Error::Scene(self.mistakes.into_iter().map(file).collect())))
+        Err(to_exception(Error::Scene(self.mistakes.into_iter().map(file).collect())))
     }
 
     /// Records a mistake. Writing continues, so that all mistakes are reported together.
@@ -89,7 +89,8 @@ impl Writer {
         let (key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>) = entry.extract()?;
         let name = key.cast::<PyString>().ok().and_then(|key| key.extract::<String>().ok());
         let Some(name) = name else {
-            return self.refuse(format!("a key is a string, not {}", shown(&key)), "use the names of a scene file");
+            return self
+                .refuse(format!("a key is a string, not {}", short_repr(&key)), "use the names of a scene file");
         };
         self.quoted(&name);
         self.text.push_str(" = ");
@@ -100,9 +101,9 @@ impl Writer {
     }
 
     fn value(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        if self.path.len() > DEEPEST {
+        if self.path.len() > MAX_DEPTH {
             return self
-                .refuse(format!("dicts and lists are nested more than {DEEPEST} deep"), "does one contain itself?");
+                .refuse(format!("dicts and lists are nested more than {MAX_DEPTH} deep"), "does one contain itself?");
         }
         if let Ok(truth) = value.cast::<PyBool>() {
             self.text.push_str(if truth.is_true() { "true" } else { "false" });
@@ -126,16 +127,16 @@ impl Writer {
         } else if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
             return self.list(value);
         } else {
-            return self.other(value);
+            return self.convertible(value);
         }
         Ok(())
     }
 
     /// Writes a value that is converted first: an array or number of numpy, a path, a time, an entry of the catalog, or
     /// a number or dict of another type.
-    fn other(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        let is = |method: &str| value.hasattr(method).unwrap_or(false);
-        if is("tolist") {
+    fn convertible(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        let has_method = |method: &str| value.hasattr(method).unwrap_or(false);
+        if has_method("tolist") {
             if is_masked(value) {
                 let help = "fill them, as by array.filled(0), or leave them out";
                 return self.refuse("a scene cannot hold masked values", help);
@@ -147,12 +148,12 @@ impl Writer {
                 return Ok(());
             }
             let plain = value.call_method0("tolist")?;
-            return self.deeper(&plain);
+            return self.converted(&plain);
         }
-        if is("__fspath__") {
-            return self.deeper(&value.call_method0("__fspath__")?);
+        if has_method("__fspath__") {
+            return self.converted(&value.call_method0("__fspath__")?);
         }
-        if is("isoformat") {
+        if has_method("isoformat") {
             let text: String = value.call_method0("isoformat")?.extract()?;
             self.text.push_str(&text);
             return Ok(());
@@ -164,12 +165,12 @@ impl Writer {
             self.quoted(name);
             return Ok(());
         }
-        if is("__index__") {
-            return self.deeper(&value.call_method0("__index__")?);
+        if has_method("__index__") {
+            return self.converted(&value.call_method0("__index__")?);
         }
         match value.extract::<f64>() {
             Ok(number) => self.value(&PyFloat::new(value.py(), number)),
-            Err(_) => self.foreign(value),
+            Err(_) => self.refuse_type(value),
         }
     }
 
@@ -178,7 +179,7 @@ impl Writer {
         match self.path.as_slice() {
             _ if self.is_alone => None,
             [Step::Key(first), .., Step::Key(mesh), Step::Key(list)] if first == "object" && mesh == "mesh" => {
-                Some(list.as_str()).filter(|list| *list == FACES || REAL.contains(list))
+                Some(list.as_str()).filter(|list| *list == FACES || COORDINATE_LISTS.contains(list))
             }
             _ => None,
         }
@@ -186,7 +187,7 @@ impl Writer {
 
     /// Writes a value that another one was converted to. It is converted again only if it is a number, so that this
     /// ends.
-    fn deeper(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn converted(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let is_plain = value.is_instance_of::<PyInt>()
             || value.is_instance_of::<PyFloat>()
             || value.is_instance_of::<PyString>()
@@ -195,11 +196,11 @@ impl Writer {
             _ if is_plain => self.value(value),
             // A number with more digits than a float of Python, such as a long double of numpy.
             Ok(number) => self.value(&PyFloat::new(value.py(), number)),
-            Err(_) => self.foreign(value),
+            Err(_) => self.refuse_type(value),
         }
     }
 
-    fn foreign(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn refuse_type(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
         if value.is_none() {
             return self.refuse("a scene cannot hold None", "leave the key out");
         }
@@ -253,29 +254,29 @@ fn is_masked(array: &Bound<'_, PyAny>) -> bool {
 /// # Errors
 /// The exception of numpy if there is too little memory.
 fn rows(array: &Bound<'_, PyAny>, is_whole: bool) -> PyResult<Option<Rows>> {
-    let asked = || -> PyResult<((usize, usize), String)> {
+    let shape_and_kind = || -> PyResult<((usize, usize), String)> {
         Ok((array.getattr("shape")?.extract()?, array.getattr("dtype")?.getattr("kind")?.extract()?))
     };
-    let Ok(((count, width), kind)) = asked() else { return Ok(None) };
+    let Ok(((count, width), kind)) = shape_and_kind() else { return Ok(None) };
     let bytes = |kind: &str| array.call_method1("astype", (kind,))?.call_method0("tobytes");
     let numbers = match kind.as_str() {
         "i" | "u" if is_whole => {
-            let whole = each(bytes("<i8")?.extract()?, i64::from_le_bytes);
+            let whole = decode_each(bytes("<i8")?.extract()?, i64::from_le_bytes);
             whole.into_iter().map(u32::try_from).collect::<Result<_, _>>().ok().map(Numbers::Whole)
         }
-        "f" | "i" | "u" if !is_whole => Some(Numbers::Real(each(bytes("<f8")?.extract()?, f64::from_le_bytes))),
+        "f" | "i" | "u" if !is_whole => Some(Numbers::Real(decode_each(bytes("<f8")?.extract()?, f64::from_le_bytes))),
         _ => None,
     };
     Ok(numbers.filter(|_| count > 0 && width > 0).map(|numbers| Rows { width, numbers }))
 }
 
 /// Converts each eight bytes to a number.
-fn each<T>(bytes: &[u8], number: impl Fn([u8; 8]) -> T) -> Vec<T> {
+fn decode_each<T>(bytes: &[u8], number: impl Fn([u8; 8]) -> T) -> Vec<T> {
     bytes.as_chunks().0.iter().map(|eight| number(*eight)).collect()
 }
 
 /// Returns a value as Python shows it, if that is short.
-pub(super) fn shown(value: &Bound<'_, PyAny>) -> String {
-    let shown = value.repr().map(|text| text.to_string()).unwrap_or_default();
-    if shown.is_empty() || shown.chars().count() > 40 { "another value".into() } else { shown }
+pub(super) fn short_repr(value: &Bound<'_, PyAny>) -> String {
+    let short_repr = value.repr().map(|text| text.to_string()).unwrap_or_default();
+    if short_repr.is_empty() || short_repr.chars().count() > 40 { "another value".into() } else { short_repr }
 }

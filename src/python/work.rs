@@ -10,7 +10,7 @@ use std::time::Duration;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::errors::{defect, raised};
+use super::errors::{bug_error, to_exception};
 
 /// The maximum time between two checks for signals.
 const TICK: Duration = Duration::from_millis(50);
@@ -18,7 +18,7 @@ const TICK: Duration = Duration::from_millis(50);
 const STACK: usize = 8 << 20;
 /// The process that worked first, all of whose work shares its threads. A process forked from it only has a copy of
 /// their memory, and would wait for them forever.
-static FIRST: OnceLock<u32> = OnceLock::new();
+static FIRST_PROCESS: OnceLock<u32> = OnceLock::new();
 
 /// Work on a thread of its own.
 pub(super) struct Work<T> {
@@ -39,17 +39,17 @@ impl<T: Send + 'static> Work<T> {
     /// # Errors
     /// If no thread can be started.
     pub(super) fn begin(work: impl FnOnce() -> T + Send + 'static) -> PyResult<Self> {
-        let (tell, answer) = sync_channel(1);
+        let (sender, answer) = sync_channel(1);
         let threads = threads_of_forked()?;
-        let answered = move || {
+        let run_work = move || {
             let work = || match threads {
                 Some(threads) => threads.install(work),
                 None => work(),
             };
             // If nobody waits any longer, the result is not needed.
-            let _ = tell.send(catch_unwind(AssertUnwindSafe(work)).ok());
+            let _ = sender.send(catch_unwind(AssertUnwindSafe(work)).ok());
         };
-        Builder::new().name("abbe".into()).stack_size(STACK).spawn(answered)?;
+        Builder::new().name("abbe".into()).stack_size(STACK).spawn(run_work)?;
         Ok(Self { answer: Mutex::new(answer) })
     }
 
@@ -79,7 +79,7 @@ impl<T: Send + 'static> Work<T> {
         match answer {
             Ok(Some(answer)) => Ok(Some(answer)),
             Err(RecvTimeoutError::Timeout) => Ok(None),
-            Ok(None) | Err(RecvTimeoutError::Disconnected) => Err(defect("it panicked; stderr says why")),
+            Ok(None) | Err(RecvTimeoutError::Disconnected) => Err(bug_error("it panicked; stderr says why")),
         }
     }
 }
@@ -90,9 +90,9 @@ impl<T: Send + 'static> Work<T> {
 /// # Errors
 /// If no threads can be started.
 fn threads_of_forked() -> PyResult<Option<ThreadPool>> {
-    if *FIRST.get_or_init(process::id) == process::id() {
+    if *FIRST_PROCESS.get_or_init(process::id) == process::id() {
         return Ok(None);
     }
     let threads = ThreadPoolBuilder::new().stack_size(STACK).build();
-    threads.map(Some).map_err(|error| raised(error.into()))
+    threads.map(Some).map_err(|error| to_exception(error.into()))
 }

@@ -36,12 +36,12 @@ impl<'a> PlanAccount<'a> {
     pub fn new(plan: &'a Plan) -> Self {
         let method = &plan.method;
         let (pass, is_known) = (method.light_pass.as_ref(), method.stop.is_none());
-        let of_map = method.map().map_or(0, |map| map.all_photons());
+        let map_photons = method.map().map_or(0, |map| map.all_photons());
         Self {
             model: method.basis.name(),
             transport: method.transport.name(),
             samples: method.stop.as_ref().map_or(method.samples, |stop| stop.most),
-            photons: is_known.then(|| pass.map_or(0, |pass| pass.photons) + of_map),
+            photons: is_known.then(|| pass.map_or(0, |pass| pass.photons) + map_photons),
             processor_seconds: is_known.then_some(plan.processor_time.as_secs_f64()),
             model_error: plan.model_error,
             left_out: &plan.left_out,

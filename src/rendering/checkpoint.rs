@@ -13,7 +13,7 @@ use crate::scene::{RenderText, Scene};
 use crate::trace;
 
 /// The first bytes of a checkpoint.
-const CHECKPOINT: Kind = *b"AbbeCkp4";
+const MAGIC: Kind = *b"AbbeCkp4";
 
 /// The result of resuming from a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,13 +62,13 @@ impl Finished {
 /// `files` in a certain `way`, and whether nobody has changed these since. Does not need a plan.
 pub fn has_finished(path: &Path, scene: &Scene, shard: Shard, files: &[&Path], way: &str) -> bool {
     let read = || -> Result<bool> {
-        let Some(mut blocks) = BlockReader::open(path, CHECKPOINT)? else { return Ok(false) };
-        if !blocks.block::<Identity>()?.is_of(scene, shard) {
+        let Some(mut blocks) = BlockReader::open(path, MAGIC)? else { return Ok(false) };
+        if !blocks.block::<Identity>()?.is_of_scene(scene, shard) {
             return Ok(false);
         }
         let Finished { asked, written } = blocks.block()?;
-        let is_there = |file: &&Path| Written::of(file, way).is_some_and(|file| written.contains(&file));
-        Ok(asked == digest(&format!("{:?}", scene.render)) && files.iter().all(is_there))
+        let is_unchanged = |file: &&Path| Written::of(file, way).is_some_and(|file| written.contains(&file));
+        Ok(asked == digest(&format!("{:?}", scene.render)) && files.iter().all(is_unchanged))
     };
     // Any error is reported when the render tries to continue from the checkpoint.
     read().unwrap_or(false)
@@ -80,7 +80,7 @@ pub fn has_finished(path: &Path, scene: &Scene, shard: Shard, files: &[&Path], w
 /// If it cannot be read.
 pub fn is_checkpoint(path: &Path) -> Result<bool> {
     // Opening a pipe would block.
-    Ok(path.is_file() && BlockReader::open(path, CHECKPOINT)?.is_some())
+    Ok(path.is_file() && BlockReader::open(path, MAGIC)?.is_some())
 }
 
 /// Writes a checkpoint.
@@ -88,7 +88,7 @@ pub fn is_checkpoint(path: &Path) -> Result<bool> {
 /// # Errors
 /// If it cannot be written. An existing file is then untouched.
 pub(super) fn save(path: &Path, identity: &Identity, finished: &Finished, passes: &trace::Rendering) -> Result<()> {
-    write_blocks(path, CHECKPOINT, &|blocks| {
+    write_blocks(path, MAGIC, &|blocks| {
         blocks.block(identity)?;
         blocks.block(finished)?;
         passes.save(blocks)
@@ -104,7 +104,7 @@ pub(super) fn resume(
     identity: &Identity,
     passes: &mut trace::Rendering,
 ) -> Result<(Resumed, Vec<Written>)> {
-    let Some(mut blocks) = BlockReader::open(path, CHECKPOINT)? else {
+    let Some(mut blocks) = BlockReader::open(path, MAGIC)? else {
         return refuse(path, "it is not a checkpoint", "name another image, or move that file away");
     };
     let saved: Identity = blocks.block()?;

@@ -24,9 +24,9 @@ impl Identity {
     pub(super) fn new(scene: &Scene, method: &Method, shard: Shard) -> Self {
         let spectral = scene.format.spectral;
         let stop = if method.stop.is_some() { "error or time" } else { "samples alone" };
-        let plan = digest(&format!("{:?} {spectral:?} {:?}", of_camera(method), scene.film.filter));
-        let of_method = [(STOP, stop.to_owned()), (PLAN, plan)].map(|(name, value)| (name.to_owned(), value));
-        Self(Self::without_plan(scene, shard).0.into_iter().chain(of_method).collect())
+        let plan = digest(&format!("{:?} {spectral:?} {:?}", sample_method(method), scene.film.filter));
+        let method_facts = [(STOP, stop.to_owned()), (PLAN, plan)].map(|(name, value)| (name.to_owned(), value));
+        Self(Self::without_plan(scene, shard).0.into_iter().chain(method_facts).collect())
     }
 
     /// Returns the part of the identity that is known before a scene is planned.
@@ -54,13 +54,13 @@ impl Identity {
     }
 
     /// Returns whether this is the identity of a scene, whatever the plan.
-    pub(super) fn is_of(&self, scene: &Scene, shard: Shard) -> bool {
+    pub(super) fn is_of_scene(&self, scene: &Scene, shard: Shard) -> bool {
         let own = self.0.iter().filter(|(name, _)| ![STOP, PLAN].contains(&name.as_str()));
         own.eq(&Self::without_plan(scene, shard).0)
     }
 
     /// Returns the identity that all parts of an image share.
-    pub(super) fn of_all_parts(&self) -> Self {
+    pub(super) fn without_part(&self) -> Self {
         Self(self.0.iter().filter(|(name, _)| name != "part").cloned().collect())
     }
 
@@ -90,7 +90,7 @@ impl Identity {
 /// Reduces a method to what determines the result of a camera sample. Omits the number of samples, the limits of the
 /// stop rule and the number of photons that are splatted. If photons are gathered, their number and radius are
 /// included, and so is the number of samples.
-fn of_camera(method: &Method) -> Method {
+fn sample_method(method: &Method) -> Method {
     let light_pass = method.light_pass.clone().map(|pass| LightPass { photons: 0, ..pass });
     let stop = method.stop.as_ref().map(|_| Stop { noise: None, time: None, least: 0, most: 0 });
     let method = Method { stop, ..method.clone() };

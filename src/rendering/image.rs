@@ -23,7 +23,7 @@ pub struct Image {
     pub(super) format: Format,
     pub(super) provenance: Provenance,
     /// The warning to show if the image contains no light.
-    pub(super) dark: Option<String>,
+    pub(super) dark_warning: Option<String>,
 }
 
 impl Image {
@@ -48,11 +48,11 @@ impl Image {
     /// # Panics
     /// If there is no such pixel.
     pub fn rgb_at(&self, x: u32, y: u32) -> [f32; 3] {
-        self.film.pixels[self.number(x, y)].rgb
+        self.film.pixels[self.pixel_index(x, y)].rgb
     }
 
     /// Returns the index of a pixel. Without the check, a column beyond the last would be one of the next row.
-    fn number(&self, x: u32, y: u32) -> usize {
+    fn pixel_index(&self, x: u32, y: u32) -> usize {
         assert!(x < self.width(), "there is no column {x} in an image of {} pixels per row", self.width());
         y as usize * self.film.width as usize + x as usize
     }
@@ -72,13 +72,13 @@ impl Image {
             "B" => |pixel| pixel.rgb[2],
             "A" => |pixel| pixel.alpha,
             "Z" => |pixel| pixel.depth,
-            _ => return self.layer_beside(name),
+            _ => return self.requested_layer(name),
         };
         Some(self.film.pixels.iter().map(value).collect())
     }
 
     /// Returns a channel of a requested layer.
-    fn layer_beside(&self, name: &str) -> Option<Vec<f32>> {
+    fn requested_layer(&self, name: &str) -> Option<Vec<f32>> {
         let (layer, channel) = name.rsplit_once('.')?;
         let image = self.film.layers.iter().find(|image| image.name == layer)?;
         let number = image.layer.channels().iter().position(|known| *known == channel)?;
@@ -105,8 +105,8 @@ impl Image {
         let samples = self.provenance.count(SAMPLES);
         let few = samples.and_then(|samples| few_samples(&self.format.layers, samples));
         let is_dark = self.report.light == 0.0 && self.error.as_ref().is_none_or(|error| error.asked.is_none());
-        let dark = self.dark.clone().filter(|_| is_dark);
-        few.into_iter().chain(dark).chain(warnings(&self.report, self.error.as_ref())).collect()
+        let dark_warning = self.dark_warning.clone().filter(|_| is_dark);
+        few.into_iter().chain(dark_warning).chain(warnings(&self.report, self.error.as_ref())).collect()
     }
 
     /// Returns the format of the image's file.
@@ -150,7 +150,7 @@ impl Image {
     /// # Panics
     /// If there is no such pixel.
     pub fn spectrum_at(&self, x: u32, y: u32) -> Option<Vec<[f64; 2]>> {
-        Some(spectrum(self.film.spectral.as_ref()?, self.number(x, y), 0))
+        Some(spectrum(self.film.spectral.as_ref()?, self.pixel_index(x, y), 0))
     }
 
     /// Returns the spectra of S1, S2 and S3 of a pixel, like [`spectrum_at`](Self::spectrum_at) returns that of S0.
@@ -160,7 +160,7 @@ impl Image {
     /// If there is no such pixel.
     pub fn stokes_spectra_at(&self, x: u32, y: u32) -> Option<[Vec<[f64; 2]>; 3]> {
         let spectral = self.film.spectral.as_ref().filter(|spectral| spectral.has_stokes)?;
-        let pixel = self.number(x, y);
+        let pixel = self.pixel_index(x, y);
         Some([1, 2, 3].map(|component| spectrum(spectral, pixel, component)))
     }
 

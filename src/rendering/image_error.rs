@@ -30,8 +30,8 @@ impl ImageError {
     /// as soon as the measured error is small enough tends to end when the measurement is too small. It is also at
     /// least the requested error if rare light was found, as there may be some that is rarer still.
     pub fn at_most(&self) -> f64 {
-        let of_alpha = self.alpha.map_or(0.0, |alpha| alpha.at_most);
-        let measured = self.noise.at_most.hypot(self.blur.at_most).hypot(self.model).max(of_alpha);
+        let alpha_bound = self.alpha.map_or(0.0, |alpha| alpha.at_most);
+        let measured = self.noise.at_most.hypot(self.blur.at_most).hypot(self.model).max(alpha_bound);
         let is_doubtful = self.noise.samples > FIRST_LOOK || self.noise.outlier.is_some();
         let is_chosen = self.stopped_by == Some(Stopped::Noise) && is_doubtful;
         self.asked.filter(|_| is_chosen).map_or(measured, |asked| measured.max(asked))

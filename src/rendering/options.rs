@@ -59,7 +59,7 @@ impl Options {
     /// overscan is too wide, the crop lies outside the image and its overscan, or its layers cannot be written,
     /// together or in the scene's format.
     pub fn apply(&self, scene: &mut Scene) -> Result<()> {
-        let (render, film) = self.instead_of(scene)?;
+        let (render, film) = self.merged_with(scene)?;
         (scene.render, scene.film) = (render, film);
         if let Some(layers) = &self.layers {
             scene.format.ask_for(layers);
@@ -72,10 +72,10 @@ impl Options {
 
     /// Returns the render settings and the film that replace those of a scene. Programs may have changed these since
     /// the scene was compiled, so they are checked as well.
-    pub(super) fn instead_of(&self, scene: &Scene) -> Result<(RenderText, FilmSettings)> {
+    pub(super) fn merged_with(&self, scene: &Scene) -> Result<(RenderText, FilmSettings)> {
         let own = &scene.render;
-        let stops_otherwise = self.error.is_some() || self.time.is_some();
-        let samples = self.samples.or(own.samples.filter(|_| !stops_otherwise));
+        let has_stop_rule = self.error.is_some() || self.time.is_some();
+        let samples = self.samples.or(own.samples.filter(|_| !has_stop_rule));
         let seed = self.seed.unwrap_or(own.seed);
         let (error, time) = (self.error.or(own.error), self.time.or(own.time));
         let is_part = self.shard != Shard::WHOLE;
@@ -161,14 +161,14 @@ pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
         return Ok(());
     }
     let help = "give that light or object a `group` of at most 23 letters a to z, digits and _";
-    let mut known = BTreeMap::new();
+    let mut groups_by_name = BTreeMap::new();
     for group in &scene.light_groups {
         let name = light_layer_name(group);
         if name.len() + ".R".len() > LONGEST_NAME {
             let message = format!("the name of the layer {name} is too long for some programs");
             return Error::refuse(message, help);
         }
-        let other = known.entry(name.clone()).or_insert(group);
+        let other = groups_by_name.entry(name.clone()).or_insert(group);
         if *other != group {
             return Error::refuse(format!("the lights {other} and {group} would share the layer {name}"), help);
         }

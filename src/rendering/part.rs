@@ -13,7 +13,7 @@ use crate::scene::FilmSettings;
 use crate::trace;
 
 /// The first bytes of a part.
-const PART: Kind = *b"AbbePrt1";
+const MAGIC: Kind = *b"AbbePrt1";
 
 /// The data before the tiles.
 #[derive(Serialize, Deserialize)]
@@ -45,9 +45,9 @@ pub(super) fn write(
     let Image { film, report, view, format, mut provenance, .. } = summary;
     let shared = passes.non_finite_in_all_parts();
     provenance.set_count(NON_FINITE, shared);
-    let (identity, non_finite) = (identity.of_all_parts(), report.non_finite - shared);
+    let (identity, non_finite) = (identity.without_part(), report.non_finite - shared);
     let head = PartHeader { identity, shard, film, format, view, provenance, non_finite };
-    write_blocks(path, PART, &|blocks| {
+    write_blocks(path, MAGIC, &|blocks| {
         blocks.block(&head.identity)?;
         blocks.block(&head)?;
         passes.tiles().try_for_each(|tile| blocks.block(&tile))
@@ -59,12 +59,12 @@ pub(super) fn write(
 /// # Errors
 /// [`Error::Arguments`] if it does not exist, is no part, or is of another version; [`Error::Decode`] if it is damaged.
 pub(super) fn open(path: &Path) -> Result<(PartHeader, BlockReader)> {
-    let made = "parts are made by --shard, as in render --shard 1/4 scene.toml";
+    let help = "parts are made by --shard, as in render --shard 1/4 scene.toml";
     if !path.exists() {
-        return Error::refuse(format!("there is no part {}", path.display()), made);
+        return Error::refuse(format!("there is no part {}", path.display()), help);
     }
-    let Some(mut blocks) = BlockReader::open(path, PART)? else {
-        return Error::refuse(format!("{} is not a part of an image", path.display()), made);
+    let Some(mut blocks) = BlockReader::open(path, MAGIC)? else {
+        return Error::refuse(format!("{} is not a part of an image", path.display()), help);
     };
     let identity: Identity = blocks.block()?;
     if let Some(objection) = identity.objection() {

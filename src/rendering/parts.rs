@@ -98,7 +98,8 @@ impl Parts {
         let PartHeader { film, format, view, mut provenance, .. } = whole;
         provenance.set_count(NON_FINITE, non_finite);
         let report = Report { non_finite, ..Report::default() };
-        let image = Image { film, report, error: None, because: Vec::new(), view, format, provenance, dark: None };
+        let image =
+            Image { film, report, error: None, because: Vec::new(), view, format, provenance, dark_warning: None };
         Ok(Self { image, files: found.into_values().collect() })
     }
 
@@ -113,7 +114,7 @@ impl Parts {
     /// # Errors
     /// The errors of [`Image::write_exr`], and [`Error::Decode`](crate::Error::Decode) if a part is damaged.
     pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<u64> {
-        write_exr(self.image.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())
+        write_exr(self.image.heading(), &mut Strip::new(self, Some(ROWS_AT_ONCE)), path.as_ref())
     }
 
     /// Writes the spectra like [`Image::write_spectral_exr`] does, in as little memory. Returns whether there are any.
@@ -121,7 +122,7 @@ impl Parts {
     /// # Errors
     /// The errors of [`write_exr`](Self::write_exr).
     pub fn write_spectral_exr(&self, path: impl AsRef<Path>) -> Result<bool> {
-        write_spectral_exr(self.image.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())?;
+        write_spectral_exr(self.image.heading(), &mut Strip::new(self, Some(ROWS_AT_ONCE)), path.as_ref())?;
         Ok(self.image.film.spectral.is_some())
     }
 
@@ -146,10 +147,10 @@ fn tiles(path: &Path, blocks: BlockReader, shard: Shard, window: Window) -> Resu
 }
 
 /// The number of rows that are merged at a time: some blocks of the default compression.
-const AT_ONCE: u32 = 64;
+const ROWS_AT_ONCE: u32 = 64;
 /// The maximum number of open files, of the 256 that the strictest system allows. If there are more parts, some are
 /// reopened for each of their tiles.
-const MOST_OPEN: usize = 200;
+const MAX_OPEN_FILES: usize = 200;
 
 /// Rows of an image, assembled from the tiles of all parts.
 struct Strip<'p> {
@@ -166,7 +167,7 @@ struct Strip<'p> {
 
 impl<'p> Strip<'p> {
     fn new(parts: &'p Parts, at_once: Option<u32>) -> Self {
-        let readers = parts.files.iter().take(MOST_OPEN).map(|_| None).collect();
+        let readers = parts.files.iter().take(MAX_OPEN_FILES).map(|_| None).collect();
         let (files, film) = (parts.files.clone(), &parts.image.film);
         let tiles = Shard::WHOLE.tiles(film.window()).count();
         Self { parts, files, readers, at_once, tiles, film: Film { height: 0, ..film.clone() } }
@@ -176,9 +177,9 @@ impl<'p> Strip<'p> {
     fn read(&mut self, place: TilePlace) -> Result<TileValues> {
         let (number, count) = (place.number as usize, self.files.len());
         let part = number % count;
-        let kept = self.readers.get_mut(part).and_then(Option::take);
+        let kept_reader = self.readers.get_mut(part).and_then(Option::take);
         let file = &mut self.files[part];
-        let mut blocks = kept.map_or_else(|| BlockReader::open_at(&file.path, file.start), Ok)?;
+        let mut blocks = kept_reader.map_or_else(|| BlockReader::open_at(&file.path, file.start), Ok)?;
         let tile: TileValues = blocks.block()?;
         if !tile.fit(place, &self.film) {
             return Err(blocks.damaged());

@@ -14,7 +14,7 @@ use super::options::{Options, check_layers};
 use super::origin::{NON_FINITE, SAMPLES, origin};
 use super::part;
 use super::plan_file::read_plan;
-use super::warnings::dark;
+use super::warnings::dark_warning;
 use crate::error::{Error, Result};
 use crate::film::{CameraView, Fact, Film, Format, Provenance, Shard};
 use crate::plan::{Plan, plan};
@@ -67,7 +67,7 @@ pub struct Rendering {
     /// The amount of work that an earlier run has done.
     resumed_at: u64,
     /// The warning for an image without any light.
-    dark: Option<String>,
+    dark_warning: Option<String>,
 }
 
 impl fmt::Debug for Rendering {
@@ -89,8 +89,8 @@ impl Rendering {
         let began = (options.stamp && options.shard == Shard::WHOLE).then_some(now);
         let mut scene = Cow::Borrowed(scene);
         let threads = options.threads()?;
-        let is_as_asked = options.instead_of(&scene)? == (scene.render.clone(), scene.film);
-        if is_as_asked && options.layers.is_none() && !options.spectral {
+        let is_unchanged = options.merged_with(&scene)? == (scene.render.clone(), scene.film);
+        if is_unchanged && options.layers.is_none() && !options.spectral {
             check_layers(&scene, options.shard)?;
         } else {
             options.apply(scene.to_mut())?;
@@ -100,7 +100,7 @@ impl Rendering {
             Some(path) => read_plan(path, &scene)?,
             None => run_on(&threads, || plan(&scene)),
         };
-        has_memory(&scene, &plan.method, options.shard)?;
+        check_memory(&scene, &plan.method, options.shard)?;
         let (world, photon_cost) = (run_on(&threads, || prepare(&scene, plan.method.clone())), plan.photon_cost);
         let camera = &scene.camera;
         let view = CameraView {
@@ -126,7 +126,7 @@ impl Rendering {
             began,
             written: Vec::new(),
             resumed_at: 0,
-            dark: dark(&scene).filter(|_| options.shard == Shard::WHOLE),
+            dark_warning: dark_warning(&scene).filter(|_| options.shard == Shard::WHOLE),
         })
     }
 
@@ -299,24 +299,24 @@ impl Rendering {
 
     /// Returns the image of all samples so far.
     pub fn image(&self) -> Image {
-        self.image_of(run_on(&self.threads, || self.passes.film()))
+        self.image_with(run_on(&self.threads, || self.passes.film()))
     }
 
     /// Returns all that is known about the image so far, except its pixels and layer values. It takes little memory.
     pub fn summary(&self) -> Image {
-        self.image_of(self.passes.frame())
+        self.image_with(self.passes.frame())
     }
 
-    fn image_of(&self, film: Film) -> Image {
+    fn image_with(&self, film: Film) -> Image {
         let (report, error) = (self.passes.report(), self.error());
         // Within a pass, some pixels have more samples than others. Then this is the mean.
-        let within = report.samples.div_ceil((u64::from(film.width) * u64::from(film.height)).max(1));
-        let samples = if self.passes.is_finished() { self.passes.samples().into() } else { within };
+        let mean_samples = report.samples.div_ceil((u64::from(film.width) * u64::from(film.height)).max(1));
+        let samples = if self.passes.is_finished() { self.passes.samples().into() } else { mean_samples };
         let mut provenance = self.provenance.clone();
         provenance.set_count(SAMPLES, samples);
         provenance.set_count(NON_FINITE, report.non_finite);
         let stopped_by = report.stopped_by.map(|by| ("stoppedBy".into(), Fact::Text(by.name().to_owned())));
-        provenance.facts.extend(stopped_by.into_iter().chain(error.iter().flat_map(facts_of_error)));
+        provenance.facts.extend(stopped_by.into_iter().chain(error.iter().flat_map(error_facts)));
         if !self.passes.is_finished() {
             provenance.facts.push(("complete".into(), Fact::Count(0)));
         }
@@ -327,8 +327,8 @@ impl Rendering {
             provenance.facts.extend([("renderTime".into(), time), ("threads".into(), threads)]);
         }
         let (because, format) = (self.plan.because.clone(), self.format.clone());
-        let dark = self.dark.clone().filter(|_| self.passes.is_finished());
-        Image { film, report, error, because, view: self.view, format, provenance, dark }
+        let dark_warning = self.dark_warning.clone().filter(|_| self.passes.is_finished());
+        Image { film, report, error, because, view: self.view, format, provenance, dark_warning }
     }
 
     /// Renders all remaining passes. `progress` is called like by [`advance`](Self::advance).
@@ -340,10 +340,10 @@ impl Rendering {
 
 /// Refuses a film that is known not to fit into memory, before the first sample is taken: an allocation that fails
 /// later ends the process without a message. A small film always fits.
-fn has_memory(scene: &Scene, method: &Method, shard: Shard) -> Result<()> {
+fn check_memory(scene: &Scene, method: &Method, shard: Shard) -> Result<()> {
     let bytes = (bytes_of_film(scene, method) + scene.layer_bytes()) / u64::from(shard.count());
-    let is_there = || Vec::<u8>::new().try_reserve_exact(usize::try_from(bytes).unwrap_or(usize::MAX)).is_ok();
-    if bytes < 1_000_000_000 || is_there() {
+    let is_available = || Vec::<u8>::new().try_reserve_exact(usize::try_from(bytes).unwrap_or(usize::MAX)).is_ok();
+    if bytes < 1_000_000_000 || is_available() {
         return Ok(());
     }
     let path = format!("the film in memory, {:.1} GB", bytes as f64 / 1e9).into();
@@ -351,7 +351,7 @@ fn has_memory(scene: &Scene, method: &Method, shard: Shard) -> Result<()> {
 }
 
 /// Returns the facts about an image's error that its file records.
-fn facts_of_error(error: &ImageError) -> Vec<(Cow<'static, str>, Fact)> {
+fn error_facts(error: &ImageError) -> Vec<(Cow<'static, str>, Fact)> {
     let [at_most, noise] = [error.at_most(), error.noise.expected].map(Fact::Number);
     let facts = [("errorAtMost", at_most), ("noise", noise), ("modelError", Fact::Number(error.model))];
     let blur = (error.blur.at_most > 0.0).then_some(("blur", Fact::Number(error.blur.expected)));

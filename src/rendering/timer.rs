@@ -1,7 +1,7 @@
 use std::time::{Duration, Instant};
 
 /// The minimum pause before the work is repeated, as a multiple of the time that it took.
-const SELDOM: u32 = 100;
+const MIN_PAUSE_FACTOR: u32 = 100;
 
 /// Schedules repeated work, such as writing a checkpoint, so that it takes at most 1 % of the time.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ impl Timer {
     pub fn run<T>(&mut self, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = work();
-        self.due = due(self.period.map(|period| period.max(start.elapsed() * SELDOM)));
+        self.due = due(self.period.map(|period| period.max(start.elapsed() * MIN_PAUSE_FACTOR)));
         result
     }
 }

@@ -10,7 +10,7 @@ use crate::trace::{MOST_MEDIA, RareLight, Report};
 pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<String> {
     let mut warnings: Vec<String> = error
         .into_iter()
-        .flat_map(|error| [outlier(error), missed(error), unmeasured(report, error)])
+        .flat_map(|error| [outlier(error), error_not_reached(error), error_unknown(report, error)])
         .flatten()
         .collect();
     let place = report.first_non_finite.map(|[x, y, sample]| format!("sample {sample} of pixel ({x}, {y})"));
@@ -38,7 +38,7 @@ pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<Strin
 }
 
 /// Returns a warning about an image without any light, or none if that is intended or already explained.
-pub(super) fn dark(scene: &Scene) -> Option<String> {
+pub(super) fn dark_warning(scene: &Scene) -> Option<String> {
     let limits = [("max_bounces", scene.render.max_bounces), ("diffuse_bounces", scene.render.diffuse_bounces)];
     let limits: Vec<String> = limits.iter().filter_map(|(key, limit)| Some(format!("{key} = {}", (*limit)?))).collect();
     let why = match limits.is_empty() {
@@ -50,11 +50,12 @@ pub(super) fn dark(scene: &Scene) -> Option<String> {
 
 /// Returns a warning about layers that need more samples per pixel.
 pub(super) fn few_samples(layers: &[Layer], samples: u64) -> Option<String> {
-    let of_halves = [Layer::Variance, Layer::HalfA, Layer::HalfB];
-    let asked: Vec<&str> = of_halves.iter().filter(|layer| layers.contains(layer)).map(|layer| layer.name()).collect();
-    (!asked.is_empty() && samples < TELL_VARIANCE.into()).then(|| {
-        let (layers, tell) = (asked.join(", "), if asked.len() == 1 { "shows" } else { "show" });
-        format!("{layers} {tell} the noise only with {TELL_VARIANCE} or more samples per pixel, not with {samples}")
+    let noise_layers = [Layer::Variance, Layer::HalfA, Layer::HalfB];
+    let requested: Vec<&str> =
+        noise_layers.iter().filter(|layer| layers.contains(layer)).map(|layer| layer.name()).collect();
+    (!requested.is_empty() && samples < TELL_VARIANCE.into()).then(|| {
+        let (layers, verb) = (requested.join(", "), if requested.len() == 1 { "shows" } else { "show" });
+        format!("{layers} {verb} the noise only with {TELL_VARIANCE} or more samples per pixel, not with {samples}")
     })
 }
 
@@ -62,7 +63,7 @@ pub(super) fn few_samples(layers: &[Layer], samples: u64) -> Option<String> {
 fn outlier(error: &ImageError) -> Option<String> {
     let outlier = error.noise.outlier.filter(|_| error.asked.is_none() || !error.is_reached())?;
     let ([x, y], share) = (outlier.pixel, percent(outlier.share));
-    let light = error.rare_light.as_ref().map_or("light".into(), told);
+    let light = error.rare_light.as_ref().map_or("light".into(), describe);
     Some(format!(
         "pixel ({x}, {y}) accounts for {share} of the noise: one of eight renders found {light} there, and no other \
          did. There may be more such light than the samples show"
@@ -70,9 +71,9 @@ fn outlier(error: &ImageError) -> Option<String> {
 }
 
 /// Warns that the requested error is not reached.
-fn missed(error: &ImageError) -> Option<String> {
-    let asked = error.asked.filter(|_| !error.is_reached())?;
-    let why = if error.model > asked {
+fn error_not_reached(error: &ImageError) -> Option<String> {
+    let requested = error.asked.filter(|_| !error.is_reached())?;
+    let why = if error.model > requested {
         format!(": the model of color alone may be off by {}", percent(error.model))
     } else if error.alpha.is_some_and(|alpha| alpha.at_most > error.noise.at_most.hypot(error.blur.at_most)) {
         ": most of it is noise of alpha, where shadow catchers are".into()
@@ -81,17 +82,17 @@ fn missed(error: &ImageError) -> Option<String> {
     } else {
         String::new()
     };
-    Some(format!("the error of {} that was asked for is not reached{why}", percent(asked)))
+    Some(format!("the error of {} that was asked for is not reached{why}", percent(requested)))
 }
 
 /// Warns of an image without any light, whose noise is unknown.
-fn unmeasured(report: &Report, error: &ImageError) -> Option<String> {
+fn error_unknown(report: &Report, error: &ImageError) -> Option<String> {
     let is_dark = report.light == 0.0 && error.alpha.is_none() && error.asked.is_some();
     is_dark.then(|| "no light was found in any pixel, so the error of the image is unknown".into())
 }
 
 /// Describes rare light and its path.
-fn told(light: &RareLight) -> String {
+fn describe(light: &RareLight) -> String {
     let RareLight { name, bounces, found } = light;
     let of = name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
     let after = if *bounces == 1 { "after 1 bounce".into() } else { format!("after {bounces} bounces") };
@@ -103,10 +104,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn too_many_clear_materials_are_told_of_only_where_there_are_so_many() {
-        let told = |has_many_media| warnings(&Report { unmatched: 1, has_many_media, ..Report::default() }, None);
+    fn too_many_clear_materials_are_mentioned_only_where_there_are_that_many() {
+        let describe = |has_many_media| warnings(&Report { unmatched: 1, has_many_media, ..Report::default() }, None);
         let once = "once, light left a clear body it had not entered and passed through undeflected: is the surface of a dielectric open";
-        assert_eq!(told(false), [format!("{once}?")]);
-        assert_eq!(told(true), [format!("{once}, or do more than 16 clear materials overlap in one place?")]);
+        assert_eq!(describe(false), [format!("{once}?")]);
+        assert_eq!(describe(true), [format!("{once}, or do more than 16 clear materials overlap in one place?")]);
     }
 }

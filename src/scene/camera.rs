@@ -1,7 +1,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::film::Optics;
-use crate::math::{DVec2, DVec3, Frame, Ray, disk, unit};
+use crate::math::{DVec2, DVec3, Frame, Ray, sample_disk, unit};
 
 /// The viewpoint, and the mapping from directions to positions in the image.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct Camera {
     projection: Projection,
     /// Half the size of the image in the plane one unit in front of the camera, or half the size of an orthographic
     /// view.
-    half: DVec2,
+    half_size: DVec2,
     /// Center of the image in that plane.
     center: DVec2,
     size: DVec2,
@@ -91,7 +91,7 @@ impl Lens {
 }
 
 /// Angle in radians below which `up` and the viewing direction count as parallel.
-const PARALLEL: f64 = 1e-4;
+const PARALLEL_ANGLE: f64 = 1e-4;
 
 /// A point of the world as the camera sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,7 +116,7 @@ impl Camera {
     pub fn new(position: DVec3, target: DVec3, up: DVec3, projection: Projection, size: [u32; 2]) -> (Self, bool) {
         let forward = (target - position).normalize();
         let across = forward.cross(up.normalize());
-        let parallel = across.length() < PARALLEL;
+        let parallel = across.length() < PARALLEL_ANGLE;
         let right = if parallel { Frame::about(forward).to_world(DVec3::X) } else { across.normalize() };
         let size = DVec2::new(f64::from(size[0]), f64::from(size[1]));
         let half_height = match projection {
@@ -130,7 +130,7 @@ impl Camera {
             up: right.cross(forward),
             forward,
             projection,
-            half: DVec2::new(half_height * size.x / size.y, half_height),
+            half_size: DVec2::new(half_height * size.x / size.y, half_height),
             center: DVec2::ZERO,
             size,
             near: 0.0,
@@ -152,7 +152,7 @@ impl Camera {
     /// Returns the camera with its image window shifted to the right and up, in fractions of the image's height.
     #[must_use]
     pub fn shifted(self, [right, up]: [f64; 2]) -> Self {
-        Self { center: DVec2::new(right, up) * (2.0 * self.half.y), ..self }
+        Self { center: DVec2::new(right, up) * (2.0 * self.half_size.y), ..self }
     }
 
     /// Returns the camera with a lens. A lens of radius 0 is a pinhole.
@@ -177,17 +177,17 @@ impl Camera {
     /// determines its distance behind the lens. A thin lens focused at a distance d whose image is at a distance v has
     /// the focal length 1 / (1 / v + 1 / d).
     pub fn optics(&self, meters_per_unit: Option<f64>) -> Optics {
-        let (width, is_flat) = (2.0 * self.half.x, matches!(self.projection, Projection::Perspective { .. }));
+        let (width, is_flat) = (2.0 * self.half_size.x, matches!(self.projection, Projection::Perspective { .. }));
         let sensor = self.sensor_width.filter(|_| is_flat);
         let pinhole_focal_length = sensor.map(|sensor| sensor / width);
         let lens = self.lens.zip(meters_per_unit);
         let mm = |lens: Lens, meters: f64| (1e3 * meters * lens.radius, lens.inverse_focus / (1e3 * meters));
-        let of_lens = lens.zip(pinhole_focal_length).map(|((lens, meters), behind)| {
+        let lens_data = lens.zip(pinhole_focal_length).map(|((lens, meters), behind)| {
             let (radius, inverse_focus) = mm(lens, meters);
             let focal_length = 1.0 / (1.0 / behind + inverse_focus);
             (focal_length, focal_length / (2.0 * radius))
         });
-        let (focal_length, f_number) = of_lens.unzip();
+        let (focal_length, f_number) = lens_data.unzip();
         Optics {
             near: Some(self.near).filter(|near| *near > 0.0),
             sensor: sensor.map(|across| [across, across * self.size.y / self.size.x]),
@@ -200,7 +200,7 @@ impl Camera {
 
     /// Returns the ray through a point of the film, in pixels from the top left corner, and the center of the lens.
     pub fn ray(&self, film: DVec2) -> Ray {
-        let (start, along) = self.axis(film);
+        let (start, along) = self.chief_ray(film);
         Ray { origin: start + along * self.near, direction: unit(along) }
     }
 
@@ -211,8 +211,8 @@ impl Camera {
     /// of the film meet at distance F, and 1 / F may be 0.
     pub fn lens_ray(&self, film: DVec2, u: [f64; 2]) -> Ray {
         let Some(lens) = self.lens else { return self.ray(film) };
-        let (start, along) = self.axis(film);
-        let place = disk(u) * lens.radius;
+        let (start, along) = self.chief_ray(film);
+        let place = sample_disk(u) * lens.radius;
         let place = self.right * place.x + self.up * place.y;
         let along = along - place * lens.inverse_focus;
         Ray { origin: start + place + along * self.near, direction: unit(along) }
@@ -229,9 +229,9 @@ impl Camera {
 
     /// Returns the ray through the center of the lens: its origin, without the near plane, and its direction. The
     /// direction reaches one unit forward, or has length 1 in an equirectangular image.
-    fn axis(&self, film: DVec2) -> (DVec3, DVec3) {
-        let x = (2.0 * film.x / self.size.x - 1.0) * self.half.x + self.center.x;
-        let y = (1.0 - 2.0 * film.y / self.size.y) * self.half.y + self.center.y;
+    fn chief_ray(&self, film: DVec2) -> (DVec3, DVec3) {
+        let x = (2.0 * film.x / self.size.x - 1.0) * self.half_size.x + self.center.x;
+        let y = (1.0 - 2.0 * film.y / self.size.y) * self.half_size.y + self.center.y;
         match self.projection {
             Projection::Perspective { .. } => (self.position, self.forward + self.right * x + self.up * y),
             Projection::Orthographic { .. } => (self.position + self.right * x + self.up * y, self.forward),
@@ -261,7 +261,7 @@ impl Camera {
             Projection::Orthographic { .. } => 1.0 - depth * lens.inverse_focus,
             _ => 1.0 / depth - lens.inverse_focus,
         };
-        lens.radius * spread.abs() / self.half.y
+        lens.radius * spread.abs() / self.half_size.y
     }
 
     /// Returns the position of the camera.
@@ -321,9 +321,9 @@ impl Camera {
     /// increases with distance. An equirectangular view has none. What a lens blurs is mapped to where the lens's
     /// center sees it.
     pub fn world_to_ndc(&self) -> Option<[[f64; 4]; 4]> {
-        let (scale, middle) = (0.5 / self.half, self.center * 0.5 / self.half);
+        let (scale, middle) = (0.5 / self.half_size, self.center * 0.5 / self.half_size);
         let (x, y) = (0.5 - middle.x, 0.5 + middle.y);
-        let of_camera = match self.projection {
+        let camera_to_ndc = match self.projection {
             Projection::Perspective { .. } => {
                 [[scale.x, 0.0, 0.0, 0.0], [0.0, -scale.y, 0.0, 0.0], [x, y, 1.0, 1.0], [0.0, 0.0, -1.0, 0.0]]
             }
@@ -332,7 +332,7 @@ impl Camera {
             }
             Projection::Equirectangular => return None,
         };
-        let product = |row: [f64; 4]| [0, 1, 2, 3].map(|to| (0..4).map(|i| row[i] * of_camera[i][to]).sum());
+        let product = |row: [f64; 4]| [0, 1, 2, 3].map(|to| (0..4).map(|i| row[i] * camera_to_ndc[i][to]).sum());
         Some(self.world_to_camera().map(product))
     }
 
@@ -341,10 +341,10 @@ impl Camera {
     /// Pixels of an orthographic view have no angle. It is then the angle of a pixel at a distance: that of the point
     /// looked at, or the length of the view's diagonal if that is larger.
     pub fn pixel_angle(&self) -> f64 {
-        let pixel = 2.0 * self.half.x / self.size.x;
+        let pixel = 2.0 * self.half_size.x / self.size.x;
         match self.projection {
             Projection::Perspective { .. } => pixel,
-            Projection::Orthographic { .. } => pixel / self.reach.max(2.0 * self.half.length()),
+            Projection::Orthographic { .. } => pixel / self.reach.max(2.0 * self.half_size.length()),
             Projection::Equirectangular => (TAU / self.size.x).min(PI / self.size.y),
         }
     }
@@ -352,7 +352,7 @@ impl Camera {
     /// Returns the width of a pixel in the middle of the image, at a distance.
     pub fn pixel_width(&self, distance: f64) -> f64 {
         match self.projection {
-            Projection::Orthographic { .. } => 2.0 * self.half.x / self.size.x,
+            Projection::Orthographic { .. } => 2.0 * self.half_size.x / self.size.x,
             _ => self.pixel_angle() * distance,
         }
     }
@@ -362,7 +362,7 @@ impl Camera {
     pub fn screen_window_width(&self) -> f64 {
         match self.projection {
             Projection::Equirectangular => 1.0,
-            _ => 2.0 * self.half.x,
+            _ => 2.0 * self.half_size.x,
         }
     }
 
@@ -376,13 +376,13 @@ impl Camera {
     pub fn see(&self, point: DVec3, u: [f64; 2]) -> Option<Seen> {
         let to_point = point - self.position;
         if self.projection == Projection::Equirectangular {
-            return self.see_all_around(to_point);
+            return self.see_equirectangular(to_point);
         }
         let depth = to_point.dot(self.forward);
         if !(depth > self.near && depth > 0.0) {
             return None;
         }
-        let place = self.lens.map_or(DVec2::ZERO, |lens| disk(u) * lens.radius);
+        let place = self.lens.map_or(DVec2::ZERO, |lens| sample_disk(u) * lens.radius);
         let bend = self.lens.map_or(DVec2::ZERO, |lens| place * lens.inverse_focus);
         let across = DVec2::new(to_point.dot(self.right), to_point.dot(self.up)) - place;
         // The ray runs along (slope, 1) from `corner` + `place`.
@@ -390,12 +390,12 @@ impl Camera {
         let slope = if parallel { -bend } else { across / depth };
         let corner = if parallel { across - slope * depth } else { DVec2::ZERO };
         let window = if parallel { corner } else { slope + bend };
-        let scaled = (window - self.center) / self.half;
+        let scaled = (window - self.center) / self.half_size;
         let film = DVec2::new(0.5 * (1.0 + scaled.x), 0.5 * (1.0 - scaled.y)) * self.size;
         let in_world = |v: DVec2| self.right * v.x + self.up * v.y;
         let along = self.forward + in_world(slope);
         let length = along.length();
-        let pixels = self.size.x * self.size.y / (4.0 * self.half.x * self.half.y);
+        let pixels = self.size.x * self.size.y / (4.0 * self.half_size.x * self.half_size.y);
         // A unit of area that faces the ray fills `length` of the window of parallel rays. Of a window one unit in
         // front of the camera it fills length / depth^2, since its solid angle is 1 / (length depth)^2 and the window's
         // cosine is 1 / length.
@@ -404,7 +404,7 @@ impl Camera {
         Some(Seen { film, start, direction: -along / length, importance })
     }
 
-    fn see_all_around(&self, to_point: DVec3) -> Option<Seen> {
+    fn see_equirectangular(&self, to_point: DVec3) -> Option<Seen> {
         let distance = to_point.length();
         if !(distance > self.near && distance > 0.0) {
             return None;

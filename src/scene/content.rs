@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::hit::{Hit, Primitive, RayEnds};
-use super::index::{Index, every};
+use super::index::{Index, accept_all};
 use super::object::{Object, Visibility};
 use super::{Camera, FilmSettings, RenderText};
 use crate::film::{Format, Layer, RANKS};
@@ -47,7 +47,7 @@ pub struct Scene<S = Curve> {
     /// Overrides of values in the file, each as `KEY=VALUE`.
     pub settings: Vec<String>,
     /// Whether a warning already explains why the image may contain no light.
-    pub(super) is_dark_told: bool,
+    pub(super) has_dark_warning: bool,
     pub(super) index: Arc<Index>,
 }
 
@@ -82,7 +82,7 @@ impl<S> Scene<S> {
             hash: self.hash.clone(),
             files: self.files.clone(),
             settings: self.settings.clone(),
-            is_dark_told: self.is_dark_told,
+            has_dark_warning: self.has_dark_warning,
             index: self.index.clone(),
         }
     }
@@ -91,7 +91,7 @@ impl<S> Scene<S> {
     pub fn is_dark_by_surprise(&self) -> bool {
         let is_cut = |object: &Object| matches!(object.visibility, Visibility::ShadowCatcher | Visibility::Holdout);
         let is_whole = self.film.crop.is_none() && self.format.layers.is_empty();
-        is_whole && !self.is_dark_told && !self.objects.iter().any(is_cut)
+        is_whole && !self.has_dark_warning && !self.objects.iter().any(is_cut)
     }
 
     /// Returns the number of channels of all layers beside the image, and of its spectral bands.
@@ -135,15 +135,15 @@ impl<S> Scene<S> {
         self.intersect_from(ray, None)
     }
 
-    /// Returns the nearest hit along a ray that may start on the primitive `left`.
-    pub fn intersect_from(&self, ray: &Ray, left: Option<Primitive>) -> Option<Hit> {
-        self.index.nearest(&self.objects, ray, f64::INFINITY, left, every)
+    /// Returns the nearest hit along a ray that may start on the primitive `from`.
+    pub fn intersect_from(&self, ray: &Ray, from: Option<Primitive>) -> Option<Hit> {
+        self.index.nearest(&self.objects, ray, f64::INFINITY, from, accept_all)
     }
 
-    /// Returns the nearest hit along a camera ray. The ray may start on a primitive `left` that it passed straight
+    /// Returns the nearest hit along a camera ray. The ray may start on a primitive `from` that it passed straight
     /// through.
-    pub fn intersect_seen(&self, ray: &Ray, left: Option<Primitive>) -> Option<Hit> {
-        self.nearest_from(ray, left, &|object| self.is_seen(object))
+    pub fn intersect_seen(&self, ray: &Ray, from: Option<Primitive>) -> Option<Hit> {
+        self.nearest_from(ray, from, &|object| self.is_seen(object))
     }
 
     /// Returns whether the camera sees an object, or at least the hole that it cuts.
@@ -152,9 +152,9 @@ impl<S> Scene<S> {
     }
 
     /// Returns the nearest hit along a ray in the world of the plate ([`Scene::is_of_plate`]). A camera ray
-    /// (`of_camera`) does not hit what is hidden from the camera.
-    pub fn intersect_plate(&self, ray: &Ray, left: Option<Primitive>, of_camera: bool) -> Option<Hit> {
-        self.nearest_from(ray, left, &|object| self.is_of_plate(object) && (!of_camera || self.is_seen(object)))
+    /// (`is_camera_ray`) does not hit what is hidden from the camera.
+    pub fn intersect_plate(&self, ray: &Ray, from: Option<Primitive>, is_camera_ray: bool) -> Option<Hit> {
+        self.nearest_from(ray, from, &|object| self.is_of_plate(object) && (!is_camera_ray || self.is_seen(object)))
     }
 
     /// Returns whether an object stands for something in the plate or lights it: a shadow catcher, a holdout or a lamp.
@@ -168,19 +168,19 @@ impl<S> Scene<S> {
         self.objects.iter().any(|object| object.visibility == Visibility::ShadowCatcher)
     }
 
-    /// Returns the nearest hit along a ray up to a distance, among the objects for which `counts` holds.
-    pub fn nearest(&self, ray: &Ray, distance: f64, counts: &dyn Fn(u32) -> bool) -> Option<Hit> {
-        self.index.nearest(&self.objects, ray, distance, None, counts)
+    /// Returns the nearest hit along a ray up to a distance, among the objects for which `accept` holds.
+    pub fn nearest(&self, ray: &Ray, distance: f64, accept: &dyn Fn(u32) -> bool) -> Option<Hit> {
+        self.index.nearest(&self.objects, ray, distance, None, accept)
     }
 
     /// Returns the objects without bounds, which are planes, with their numbers.
     pub fn unbounded(&self) -> impl Iterator<Item = (u32, &Object)> {
-        let all = self.index.always.iter().map(|&number| (number, &self.objects[number as usize]));
+        let all = self.index.always_tested.iter().map(|&number| (number, &self.objects[number as usize]));
         all.filter(|(_, object)| !object.shape.is_bounded())
     }
 
-    fn nearest_from(&self, ray: &Ray, left: Option<Primitive>, counts: &dyn Fn(u32) -> bool) -> Option<Hit> {
-        self.index.nearest(&self.objects, ray, f64::INFINITY, left, counts)
+    fn nearest_from(&self, ray: &Ray, from: Option<Primitive>, accept: &dyn Fn(u32) -> bool) -> Option<Hit> {
+        self.index.nearest(&self.objects, ray, f64::INFINITY, from, accept)
     }
 
     /// Returns whether anything lies before a light at `distance`. The light's own object does not occlude it, unless
@@ -195,10 +195,10 @@ impl<S> Scene<S> {
         ends: impl Into<RayEnds>,
         last_occluder: &Cell<Option<u32>>,
     ) -> bool {
-        self.index.is_occluded(&self.objects, ray, distance, ends.into(), last_occluder, every)
+        self.index.is_occluded(&self.objects, ray, distance, ends.into(), last_occluder, accept_all)
     }
 
-    /// Returns whether an object for which `counts` holds lies before a light at `distance`. The light's own object
+    /// Returns whether an object for which `accept` holds lies before a light at `distance`. The light's own object
     /// does not occlude it, unless `ends` names one of its parts: then its other parts may.
     pub fn is_occluded_by(
         &self,
@@ -206,8 +206,8 @@ impl<S> Scene<S> {
         distance: f64,
         ends: impl Into<RayEnds>,
         last_occluder: &Cell<Option<u32>>,
-        counts: &dyn Fn(u32) -> bool,
+        accept: &dyn Fn(u32) -> bool,
     ) -> bool {
-        self.index.is_occluded(&self.objects, ray, distance, ends.into(), last_occluder, counts)
+        self.index.is_occluded(&self.objects, ray, distance, ends.into(), last_occluder, accept)
     }
 }

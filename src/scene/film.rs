@@ -68,11 +68,11 @@ impl FilmSettings {
         if width == 0 || height == 0 {
             return Some(format!("a crop has at least 1 pixel along each side, not {width} x {height}"));
         }
-        let there = self.with_overscan();
-        if there.holds(&crop) {
+        let available = self.with_overscan();
+        if available.holds(&crop) {
             return None;
         }
-        let ([[left, top], [right, bottom]], [first, end]) = (crop.ends(), there.ends());
+        let ([[left, top], [right, bottom]], [first, end]) = (crop.ends(), available.ends());
         let plain = self.overscan == Overscan::default();
         let image = if plain { "the image" } else { "the image with its overscan" };
         Some(if left < first[0] || top < first[1] {

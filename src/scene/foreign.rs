@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::error::ends_in;
+use crate::error::has_extension;
 
-pub(super) const A_SCENE: &str = "a scene is a TOML file, such as scene.toml";
-const EXPORT: &str = "export its meshes as PLY, OBJ or glTF, and write a scene in TOML around them";
+pub(super) const SCENE_HELP: &str = "a scene is a TOML file, such as scene.toml";
+const EXPORT_HELP: &str = "export its meshes as PLY, OBJ or glTF, and write a scene in TOML around them";
 
 /// What files with these extensions are, and what to do with one. `FILE` stands for its name.
 const KINDS: [(&[&str], &str, &str); 11] = [
@@ -21,12 +21,12 @@ const KINDS: [(&[&str], &str, &str); 11] = [
         "in a scene, which is a TOML file, write it as shape.mesh = { file = \"FILE\" }; README.md begins with an \
          example",
     ),
-    (&["stl", "fbx", "dae", "3ds", "abc"], "a mesh or a scene from another program", EXPORT),
-    (&["pbrt"], "a pbrt scene", EXPORT),
-    (&["blend"], "a Blender file", EXPORT),
-    (&["usd", "usda", "usdc", "usdz"], "a USD scene", EXPORT),
-    (&["pov"], "a POV-Ray scene", EXPORT),
-    (&["xml"], "XML, as Mitsuba scenes are", EXPORT),
+    (&["stl", "fbx", "dae", "3ds", "abc"], "a mesh or a scene from another program", EXPORT_HELP),
+    (&["pbrt"], "a pbrt scene", EXPORT_HELP),
+    (&["blend"], "a Blender file", EXPORT_HELP),
+    (&["usd", "usda", "usdc", "usdz"], "a USD scene", EXPORT_HELP),
+    (&["pov"], "a POV-Ray scene", EXPORT_HELP),
+    (&["xml"], "XML, as Mitsuba scenes are", EXPORT_HELP),
     (
         &["json", "yaml", "yml"],
         "JSON or YAML",
@@ -38,6 +38,6 @@ const KINDS: [(&[&str], &str, &str); 11] = [
 /// Returns what a file that is not TOML is, judged by its extension, and what to do with it. `shown` is its name in the
 /// help.
 pub(super) fn foreign(path: &Path, shown: &str) -> Option<(&'static str, String)> {
-    let (_, what, help) = KINDS.iter().find(|(endings, ..)| ends_in(path, endings))?;
-    Some((what, help.replace("FILE", shown)))
+    let (_, kind, help) = KINDS.iter().find(|(endings, ..)| has_extension(path, endings))?;
+    Some((kind, help.replace("FILE", shown)))
 }

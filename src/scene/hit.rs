@@ -32,7 +32,7 @@ impl Primitive {
     pub(super) const NONE: Self = Self { object: u32::MAX, part: 0 };
 
     /// Returns the part, if it belongs to this object.
-    pub(super) fn of(self, object: u32) -> Option<u32> {
+    pub(super) fn part_of(self, object: u32) -> Option<u32> {
         (self.object == object).then_some(self.part)
     }
 }

@@ -10,9 +10,10 @@ use toml::de::DeTable;
 
 use super::Scene;
 use super::compile::{SECTIONS, compile};
-use super::foreign::{A_SCENE, foreign};
+use super::foreign::{SCENE_HELP, foreign};
 use super::text::{
-    Document, Fault, Included, LocatedBy, MOST_BYTES, Mistake, Rows, Texts, fill, merged, parsed, set, utf8,
+    Document, Fault, IncludedTexts, LocatedBy, MAX_BYTES, Mistake, Rows, Texts, merge_files, parse_toml, set,
+    substitute_variables, utf8,
 };
 use crate::error::{Error, Result, nearest_file};
 
@@ -35,25 +36,25 @@ impl Source {
     /// If it cannot be read or is not UTF-8.
     pub fn read(path: &Path) -> Result<Self> {
         let shown = path.display();
-        let bytes = match File::open(path).and_then(all_of) {
+        let bytes = match File::open(path).and_then(read_limited) {
             Ok(bytes) => bytes,
             Err(error) => {
                 return match error.kind() {
                     ErrorKind::NotFound | ErrorKind::NotADirectory => {
                         let near =
                             nearest_file(path, &["toml"]).map(|near| format!("did you mean {}?", near.display()));
-                        Error::refuse(format!("there is no scene file {shown}"), near.unwrap_or(A_SCENE.into()))
+                        Error::refuse(format!("there is no scene file {shown}"), near.unwrap_or(SCENE_HELP.into()))
                     }
-                    ErrorKind::IsADirectory => Error::refuse(format!("{shown} is a folder, not a scene"), A_SCENE),
+                    ErrorKind::IsADirectory => Error::refuse(format!("{shown} is a folder, not a scene"), SCENE_HELP),
                     _ => Err(Error::Io { doing: "read", path: path.to_owned(), source: error }),
                 };
             }
         };
-        let text = text_of(bytes, &shown.to_string());
-        let is_toml = || text.as_ref().is_ok_and(|text| parsed(text, 0).is_ok());
+        let text = decode_text(bytes, &shown.to_string());
+        let is_toml = || text.as_ref().is_ok_and(|text| parse_toml(text, 0).is_ok());
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         match foreign(path, &name).filter(|_| !is_toml()) {
-            Some((what, help)) => Error::refuse(format!("{shown} is {what}, not a scene in TOML"), help),
+            Some((kind, help)) => Error::refuse(format!("{shown} is {kind}, not a scene in TOML"), help),
             None => Ok(Self { path: path.to_owned(), text: text? }),
         }
     }
@@ -64,8 +65,8 @@ impl Source {
     /// If it cannot be read or is not UTF-8.
     pub fn standard_input() -> Result<Self> {
         let path = PathBuf::from("<stdin>");
-        match all_of(std::io::stdin().lock()) {
-            Ok(bytes) => Ok(Self { path, text: text_of(bytes, "the scene on standard input")? }),
+        match read_limited(std::io::stdin().lock()) {
+            Ok(bytes) => Ok(Self { path, text: decode_text(bytes, "the scene on standard input")? }),
             Err(source) => Err(Error::Io { doing: "read", path, source }),
         }
     }
@@ -128,8 +129,9 @@ impl Source {
     }
 
     fn compile_by(&self, place: LocatedBy, given: &[String], rows: Vec<Rows>, is_file: bool) -> Result<Scene> {
-        let Included { mut texts, parts, mistakes, mut files, .. } = Included::of(&self.path, &self.text, is_file);
-        (texts.rows, texts.told_by) = (rows, place);
+        let IncludedTexts { mut texts, parts, mistakes, mut files, .. } =
+            IncludedTexts::of(&self.path, &self.text, is_file);
+        (texts.rows, texts.located_by) = (rows, place);
         let settings = texts.add_lines(Path::new(SETTINGS), self.folder(), given);
         let refuse = |mut mistakes: Vec<Mistake>| {
             mistakes.sort_by_key(|mistake| mistake.span.start);
@@ -145,10 +147,10 @@ impl Source {
             Error::Scene(mistakes.into_iter().map(diagnostic).collect())
         };
         if !mistakes.is_empty() {
-            let others = merged(&texts, &parts).err().into_iter().flatten();
+            let others = merge_files(&texts, &parts).err().into_iter().flatten();
             return Err(refuse(mistakes.into_iter().chain(others).collect()));
         }
-        let (root, unused) = whole(&texts, &parts, &settings).map_err(refuse)?;
+        let (root, unused) = merge_texts(&texts, &parts, &settings).map_err(refuse)?;
         let document = Document::new(&texts, &root);
         let mut scene = compile(&document).ok_or_else(|| refuse(document.mistakes()))?;
         scene.settings = given.to_vec();
@@ -166,41 +168,41 @@ impl Source {
 
 /// Merges the texts of all files, and puts the values of settings and variables in their places. Also returns the names
 /// of variables that are not used.
-fn whole<'d>(
+fn merge_texts<'d>(
     texts: &'d Texts,
     files: &[Range<usize>],
     settings: &[Range<usize>],
 ) -> std::result::Result<(DeTable<'d>, Vec<String>), Vec<Mistake>> {
-    let mut root = merged(texts, files)?;
+    let mut root = merge_files(texts, files)?;
     let text = |span: &Range<usize>| &texts.whole[span.clone()];
     let wrong = settings.iter().filter_map(|span| set(&mut root, text(span), span.start, &SECTIONS).err());
     let wrong: Vec<Mistake> = wrong.collect();
     if !wrong.is_empty() {
         return Err(wrong);
     }
-    let unused = fill(&mut root, &SECTIONS)?;
+    let unused = substitute_variables(&mut root, &SECTIONS)?;
     Ok((root, unused))
 }
 
 /// Returns the paths of the keys at which mistakes in the first file stand.
 fn keys(texts: &Texts, files: &[Range<usize>], mistakes: &[Mistake]) -> HashMap<Range<usize>, String> {
     let spans = mistakes.iter().map(|mistake| mistake.span.clone()).filter(|span| texts.is_in_first(span.start));
-    let first = files.first().and_then(|file| parsed(&texts.whole[file.clone()], file.start).ok());
+    let first = files.first().and_then(|file| parse_toml(&texts.whole[file.clone()], file.start).ok());
     first.map(|root| Document::new(texts, &root).paths(spans)).unwrap_or_default()
 }
 
 /// Reads all bytes, but stops one byte beyond the limit.
-fn all_of(reader: impl Read) -> std::io::Result<Vec<u8>> {
+fn read_limited(reader: impl Read) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    reader.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    reader.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-fn text_of(bytes: Vec<u8>, shown: &str) -> Result<String> {
-    if bytes.len() as u64 > MOST_BYTES {
-        return Error::refuse(format!("{shown} has more than {MOST_BYTES} bytes"), A_SCENE);
+fn decode_text(bytes: Vec<u8>, shown: &str) -> Result<String> {
+    if bytes.len() as u64 > MAX_BYTES {
+        return Error::refuse(format!("{shown} has more than {MAX_BYTES} bytes"), SCENE_HELP);
     }
-    utf8(bytes, shown, A_SCENE).map_err(|Fault { message, help }| Error::Arguments { message, help })
+    utf8(bytes, shown, SCENE_HELP).map_err(|Fault { message, help }| Error::Arguments { message, help })
 }
 
 impl Scene {

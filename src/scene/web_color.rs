@@ -8,24 +8,24 @@ use crate::spectrum::decode_srgb;
 pub fn web_color(text: &str) -> Option<String> {
     let text = text.trim().to_lowercase();
     match text.strip_prefix('#').or_else(|| text.strip_prefix("0x")) {
-        Some(digits) => of_digits(digits),
+        Some(digits) => hex_to_linear(digits),
         None => {
             let list = text.strip_prefix("rgb(").and_then(|list| list.strip_suffix(')')).unwrap_or(&text);
             let parts = list.split([',', ' ']).filter(|part| !part.is_empty());
             let parts: Vec<f64> = parts.map(|part| part.parse().ok()).collect::<Option<_>>()?;
-            of_bytes(parts.try_into().ok()?)
+            bytes_to_linear(parts.try_into().ok()?)
         }
     }
 }
 
 /// Converts sRGB numbers from 0 to 255, at least one of them above 1, to linear light. Returns none for other numbers.
-pub fn of_bytes(bytes: [f64; 3]) -> Option<String> {
+pub fn bytes_to_linear(bytes: [f64; 3]) -> Option<String> {
     let are_bytes = bytes.iter().all(|x| (0.0..=255.0).contains(x) && x.fract() == 0.0);
-    (are_bytes && bytes.iter().any(|x| *x > 1.0)).then(|| of_srgb(bytes.map(|x| x / 255.0)))
+    (are_bytes && bytes.iter().any(|x| *x > 1.0)).then(|| srgb_to_linear(bytes.map(|x| x / 255.0)))
 }
 
 /// Converts sRGB numbers from 0 to 1 to linear light, rounded to three digits.
-pub fn of_srgb(color: [f64; 3]) -> String {
+pub fn srgb_to_linear(color: [f64; 3]) -> String {
     let three_digits = |x: f64| format!("{:.2e}", decode_srgb(x)).parse().unwrap_or(x);
     let color: Vec<String> = color.map(three_digits).iter().map(f64::to_string).collect();
     format!("[{}]", color.join(", "))
@@ -33,7 +33,7 @@ pub fn of_srgb(color: [f64; 3]) -> String {
 
 /// Converts two hexadecimal digits each for red, green and blue, or one that counts twice. Digits for alpha may follow
 /// and are ignored.
-fn of_digits(digits: &str) -> Option<String> {
+fn hex_to_linear(digits: &str) -> Option<String> {
     let width = match digits.len() {
         3 | 4 => 1,
         6 | 8 => 2,
@@ -43,7 +43,7 @@ fn of_digits(digits: &str) -> Option<String> {
     let byte = |part: &[u8]| f64::from(16 * part[0] + part[width - 1]);
     let mut bytes = all.chunks(width).map(byte);
     let color = [bytes.next()?, bytes.next()?, bytes.next()?];
-    Some(of_srgb(color.map(|x| x / 255.0)))
+    Some(srgb_to_linear(color.map(|x| x / 255.0)))
 }
 
 #[cfg(test)]
@@ -52,7 +52,7 @@ mod tests {
 
     /// In linear light, 136 of 255 is 0.2462 and 51 is 0.03310 (IEC 61966-2-1).
     #[test]
-    fn a_color_of_the_web_is_told_in_linear_light() {
+    fn a_web_color_is_converted_to_linear_light() {
         for orange in ["#ff8800", "#FF8800", "#f80", "#ff8800cc", "0xff8800", "rgb(255, 136, 0)", "255 136 0"] {
             assert_eq!(web_color(orange).as_deref(), Some("[1, 0.246, 0]"), "{orange}");
         }

@@ -27,9 +27,9 @@ impl AffinePlane {
         let cross = DVec3::new(coordinate(1, 2), coordinate(2, 0), coordinate(0, 1)).normalize();
         let normal = if cross.dot(front) < 0.0 { -cross } else { cross };
         // The duals pick out one coordinate: dual_u.u = 1, dual_u.v = 0.
-        let dual = |of: DVec3, other: DVec3| {
+        let dual = |axis: DVec3, other: DVec3| {
             let across = other.normalize().cross(cross);
-            across / across.dot(of)
+            across / across.dot(axis)
         };
         let terms = center.abs() + u.abs() + v.abs();
         Self { center, u, v, normal, dual_u: dual(u, v), dual_v: dual(v, u), terms }
@@ -68,7 +68,7 @@ impl AffinePlane {
         if !is_near(center - from, u.length_squared() + v.length_squared()) {
             return None;
         }
-        Outline::seen(from, &[center - u - v, center + u - v, center + u + v, center - u + v], 4.0 * u.cross(v))
+        Outline::seen_from(from, &[center - u - v, center + u - v, center + u + v, center - u + v], 4.0 * u.cross(v))
     }
 
     /// Returns the area of the parallelogram |a| <= 1, |b| <= 1.

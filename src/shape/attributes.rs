@@ -27,10 +27,10 @@ impl Attributes {
         }
         let interpolated: [f64; 3] = interpolated(&self.normals, corners, uv);
         let Some(normal) = DVec3::from(interpolated).try_normalize() else { return flat };
-        let looks_away = |corner: u32| flat.dot(self.normals[corner as usize].map(f64::from).into()) < 0.0;
+        let faces_away = |corner: u32| flat.dot(self.normals[corner as usize].map(f64::from).into()) < 0.0;
         match normal.dot(flat) {
             along if along > 0.0 => normal,
-            along if along < 0.0 && corners.into_iter().all(looks_away) => -normal,
+            along if along < 0.0 && corners.into_iter().all(faces_away) => -normal,
             _ => flat,
         }
     }
@@ -45,9 +45,9 @@ impl Attributes {
         // largest number is 1.
         let Some(back) = map.inverse() else { return self.clone() };
         let size = back.size();
-        let turned =
-            |normal: &[f32; 3]| (back.transposed(normal.map(f64::from).into()) / size).to_array().map(|x| x as f32);
-        let (normals, coordinates) = (self.normals.iter().map(turned).collect(), self.coordinates.clone());
+        let map_normal =
+            |normal: &[f32; 3]| (back.mul_transposed(normal.map(f64::from).into()) / size).to_array().map(|x| x as f32);
+        let (normals, coordinates) = (self.normals.iter().map(map_normal).collect(), self.coordinates.clone());
         Self { normals, coordinates, bare: self.bare }
     }
 }
@@ -62,8 +62,8 @@ fn interpolated<const K: usize>(numbers: &[[f32; K]], corners: [u32; 3], [u, v]:
 ///
 /// Thuermer & Wuethrich 1998, *Computing Vertex Normals from Polygonal Facets*.
 pub fn vertex_normals(vertices: &Vertices, faces: &[[u32; 3]]) -> Vec<[f32; 3]> {
-    let merged = vertices.merged();
-    let mut sums = vec![DVec3::ZERO; merged.len()];
+    let welded = vertices.welded();
+    let mut sums = vec![DVec3::ZERO; welded.len()];
     for face in faces {
         let points = face.map(|corner| vertices.at(corner));
         for i in 0..3 {
@@ -73,10 +73,10 @@ pub fn vertex_normals(vertices: &Vertices, faces: &[[u32; 3]]) -> Vec<[f32; 3]> 
             let across = along.cross(back);
             let angle = libm::atan2(across.length(), along.dot(back));
             if let Some(normal) = across.try_normalize() {
-                sums[merged[face[i] as usize] as usize] += normal * angle;
+                sums[welded[face[i] as usize] as usize] += normal * angle;
             }
         }
     }
     let normal = |&vertex: &u32| sums[vertex as usize].normalize_or_zero().to_array().map(|x| x as f32);
-    merged.iter().map(normal).collect()
+    welded.iter().map(normal).collect()
 }

@@ -17,10 +17,10 @@ impl Ball {
 
     /// Returns the cone of directions in which the ball is seen from a point, or all directions if the point is inside.
     pub fn cone_from(&self, from: DVec3) -> Cone {
-        let way = self.center - from;
-        let sin_squared = self.radius * self.radius / way.length_squared();
+        let to_other = self.center - from;
+        let sin_squared = self.radius * self.radius / to_other.length_squared();
         if sin_squared < 1.0 {
-            Cone { axis: way.normalize(), one_minus_cos: one_minus_cos_of_cone(sin_squared) }
+            Cone { axis: to_other.normalize(), one_minus_cos: one_minus_cos_of_cone(sin_squared) }
         } else {
             Cone::ALL
         }
@@ -33,8 +33,8 @@ impl Ball {
 
     /// Returns the smallest ball that contains two balls.
     pub fn around(self, other: Self) -> Self {
-        let way = other.center - self.center;
-        let distance = way.length();
+        let to_other = other.center - self.center;
+        let distance = to_other.length();
         if distance + other.radius <= self.radius {
             return self;
         }
@@ -42,19 +42,19 @@ impl Ball {
             return other;
         }
         let radius = 0.5 * (distance + self.radius + other.radius);
-        Self { center: self.center + way * ((radius - self.radius) / distance), radius }
+        Self { center: self.center + to_other * ((radius - self.radius) / distance), radius }
     }
 
     /// Returns the unit normals n of the points of the ball's surface that see some part of another ball. With centers
     /// l and c and radii r and R, these satisfy n . (c - l) > r - R if the balls lie apart. Otherwise returns all
     /// normals.
     pub fn cap_toward(&self, other: &Self) -> Cone {
-        let way = other.center - self.center;
-        let distance = way.length();
+        let to_other = other.center - self.center;
+        let distance = to_other.length();
         if distance <= self.radius + other.radius {
             return Cone::ALL;
         }
-        Cone { axis: way / distance, one_minus_cos: 1.0 - (self.radius - other.radius) / distance }
+        Cone { axis: to_other / distance, one_minus_cos: 1.0 - (self.radius - other.radius) / distance }
     }
 }
 
@@ -63,7 +63,7 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::math::ball_surface;
+    use crate::math::sample_sphere;
     use crate::shape::{Shape, Sphere};
 
     #[test]
@@ -79,7 +79,7 @@ mod tests {
         };
         let mut within = 0;
         for i in 0..10_000 {
-            let normal = ball_surface([(f64::from(i) + 0.5) / 1e4, (f64::from(i) * 0.618_034).fract()]);
+            let normal = sample_sphere([(f64::from(i) + 0.5) / 1e4, (f64::from(i) * 0.618_034).fract()]);
             let inside = 0.5 * (normal - axis).length_squared() <= one_minus_cos;
             assert_eq!(inside, sees(normal), "{normal}");
             within += i32::from(inside);

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Neg;
 
 use super::{Disc, Intersection, Quad, Shape, SurfacePoint};
-use crate::math::{DMat3, DVec3, Transform, level};
+use crate::math::{DMat3, DVec3, Transform, horizontal_tangent};
 
 /// The texture coordinates (u, v) of the points of a shape. Transforms carry them along.
 ///
@@ -52,12 +52,12 @@ impl Coordinates {
         let inverse = map.inverse_linear();
         Some(match shape {
             Shape::Quad(_) | Shape::Disc(_) => Self::Square,
-            Shape::Triangle(_) => Self::Triangle { swapped: map.mirrors() },
+            Shape::Triangle(_) => Self::Triangle { swapped: map.swaps_handedness() },
             Shape::Cube(_) => Self::Cube,
             Shape::Sphere(sphere) => Self::Sphere { center: map.point(sphere.center), inverse },
             Shape::Plane(plane) => {
                 let normal = plane.normal();
-                let u = level(normal);
+                let u = horizontal_tangent(normal);
                 let [u, v] = [u, normal.cross(u)].map(|axis| inverse.transpose() * axis);
                 Self::Plane { origin: map.point(plane.point), u, v }
             }
@@ -81,8 +81,8 @@ impl Coordinates {
                 [0.5 + libm::atan2(x, z) / TAU, 1.0 - libm::atan2((x * x + z * z).sqrt(), y) / PI]
             }
             Self::Plane { origin, u, v } => {
-                let way = position - *origin;
-                [way.dot(*u), way.dot(*v)]
+                let offset = position - *origin;
+                [offset.dot(*u), offset.dot(*v)]
             }
         }
     }
@@ -153,7 +153,7 @@ mod tests {
     use crate::shape::{Attributes, Cube, Mesh, Plane, Sphere, Triangle, Vertices};
 
     /// Returns the coordinates of the first point that a ray from `from` to `toward` meets.
-    fn seen(shape: Shape, map: &Transform, from: DVec3, toward: DVec3) -> [f64; 2] {
+    fn seen_coordinates(shape: Shape, map: &Transform, from: DVec3, toward: DVec3) -> [f64; 2] {
         let coordinates = Coordinates::new(&shape, map).expect("the shape has coordinates");
         let shape = shape.transformed(map);
         let ray = Ray { origin: from, direction: (toward - from).normalize() };
@@ -198,9 +198,9 @@ mod tests {
         let cube = Cube::new(DVec3::new(0.1, 0.2, 0.3), DVec3::splat(2.0));
         for (shape, point) in shapes().into_iter().chain([(Shape::Cube(cube), DVec3::new(0.4, 0.1, 1.3))]) {
             let from = point + DVec3::new(0.1, 0.2, 2.0);
-            let plain = seen(shape.clone(), &Transform::IDENTITY, from, point);
+            let plain = seen_coordinates(shape.clone(), &Transform::IDENTITY, from, point);
             for map in maps() {
-                assert_near(seen(shape.clone(), &map, map.point(from), map.point(point)), plain);
+                assert_near(seen_coordinates(shape.clone(), &map, map.point(from), map.point(point)), plain);
             }
         }
     }
@@ -217,7 +217,7 @@ mod tests {
         ] {
             let disc = || Shape::Disc(Disc::new(DVec3::ZERO, normal, 1.0, None).expect("it has a radius"));
             let point = 0.4 * right - 0.6 * up;
-            assert_near(seen(disc(), &Transform::IDENTITY, normal + point, point), [0.7, 0.2]);
+            assert_near(seen_coordinates(disc(), &Transform::IDENTITY, normal + point, point), [0.7, 0.2]);
         }
     }
 
@@ -235,7 +235,7 @@ mod tests {
         ];
         for (outward, right, up) in faces {
             let point = outward + 0.4 * right - 0.6 * up;
-            assert_near(seen(cube(), &Transform::IDENTITY, 2.0 * outward + point, point), [0.7, 0.2]);
+            assert_near(seen_coordinates(cube(), &Transform::IDENTITY, 2.0 * outward + point, point), [0.7, 0.2]);
         }
     }
 
@@ -244,7 +244,7 @@ mod tests {
         let at = |direction: DVec3| {
             let sphere = Shape::Sphere(Sphere::new(DVec3::new(1.0, 2.0, 3.0), 0.5));
             let center = DVec3::new(1.0, 2.0, 3.0);
-            seen(sphere, &Transform::IDENTITY, center + 4.0 * direction, center)
+            seen_coordinates(sphere, &Transform::IDENTITY, center + 4.0 * direction, center)
         };
         assert_near(at(DVec3::Z), [0.5, 0.5]);
         assert_near(at(DVec3::X), [0.75, 0.5]);
@@ -256,7 +256,7 @@ mod tests {
     fn a_plane_counts_scene_units_to_the_right_and_up() {
         let at = |normal: DVec3, point: DVec3| {
             let plane = Shape::Plane(Plane::new(DVec3::ZERO, normal));
-            seen(plane, &Transform::IDENTITY, point + normal, point)
+            seen_coordinates(plane, &Transform::IDENTITY, point + normal, point)
         };
         assert_near(at(DVec3::Y, DVec3::new(3.0, 0.0, 5.0)), [3.0, -5.0]);
         assert_near(at(DVec3::Z, DVec3::new(3.0, 5.0, 0.0)), [3.0, 5.0]);
@@ -311,8 +311,8 @@ mod tests {
         let [along_u, along_v] = coordinates.tangents(shape, &intersection, &point).expect("it has coordinates");
         assert!(along_u.dot(point.normal).abs() <= 1e-12 * along_u.length(), "{shape:?}: out of the surface");
         const STEP: f64 = 1e-6;
-        for way in [outward.any_orthonormal_vector(), outward.cross(outward.any_orthonormal_vector())] {
-            let [(_, ahead, [u1, v1]), (_, behind, [u2, v2])] = [STEP, -STEP].map(|step| see(place + way * step));
+        for offset in [outward.any_orthonormal_vector(), outward.cross(outward.any_orthonormal_vector())] {
+            let [(_, ahead, [u1, v1]), (_, behind, [u2, v2])] = [STEP, -STEP].map(|step| see(place + offset * step));
             let moved = ahead.position - behind.position;
             let expected = along_u * (u1 - u2) + along_v * (v1 - v2);
             // The remaining error is of third order in the step, plus roundings of positions and coordinates: 1e-15

@@ -21,10 +21,10 @@ impl Cube {
     /// Creates the box with edges of the given full lengths along the axes.
     pub fn new(center: DVec3, size: DVec3) -> Self {
         let half = size * 0.5;
-        Self::spanned(center, [DVec3::X * half.x, DVec3::Y * half.y, DVec3::Z * half.z])
+        Self::from_half_edges(center, [DVec3::X * half.x, DVec3::Y * half.y, DVec3::Z * half.z])
     }
 
-    fn spanned(center: DVec3, half_edges: [DVec3; 3]) -> Self {
+    fn from_half_edges(center: DVec3, half_edges: [DVec3; 3]) -> Self {
         let terms = half_edges.iter().fold(center.abs(), |terms, edge| terms + edge.abs());
         let face = |index: usize| {
             let (axis, outward) = (index / 2, if index % 2 == 1 { 1.0 } else { -1.0 });
@@ -74,15 +74,15 @@ impl Cube {
         let d = ray.at(t) - self.center;
         // The point is kept inside the edges by more than the rounding of a slab coordinate. A ray that continues
         // inside then starts inside all slabs, and hits no face that it did not cross.
-        let limit = 1.0 - 64.0 * UNIT_ROUNDOFF * (1.0 + (self.center.abs() + self.extent()).dot(self.reach()));
+        let limit = 1.0 - 64.0 * UNIT_ROUNDOFF * (1.0 + (self.center.abs() + self.extent()).dot(self.sensitivity()));
         let limit = limit.max(0.0);
         let coordinate = |axis: usize| d.dot(self.duals[axis]).clamp(-limit, limit);
         Intersection { t, part: face as u32, uv: [coordinate((face / 2 + 1) % 3), coordinate((face / 2 + 2) % 3)] }
     }
 
     /// Returns how much the rounding of a world coordinate can move a slab coordinate.
-    fn reach(&self) -> DVec3 {
-        self.duals.iter().fold(DVec3::ZERO, |reach, dual| reach.max(dual.abs()))
+    fn sensitivity(&self) -> DVec3 {
+        self.duals.iter().fold(DVec3::ZERO, |sensitivity, dual| sensitivity.max(dual.abs()))
     }
 
     pub(super) fn point(&self, intersection: &Intersection) -> SurfacePoint {
@@ -106,7 +106,7 @@ impl Cube {
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {
-        Self::spanned(map.point(self.center), self.half_edges.map(|edge| map.vector(edge)))
+        Self::from_half_edges(map.point(self.center), self.half_edges.map(|edge| map.vector(edge)))
     }
 
     pub(super) fn area(&self) -> f64 {
@@ -120,19 +120,19 @@ impl Cube {
 
     /// Samples a point uniformly by area. Returns it with the face it lies on.
     pub(super) fn sample_area(&self, u: [f64; 2]) -> (DVec3, u32) {
-        let (face, along) = self.choose(u[0]);
+        let (face, along) = self.choose_part(u[0]);
         (self.face(face).sample_area([along, u[1]]), face)
     }
 
     /// Draws a face in proportion to its area. Returns it with the rest of the random number.
-    pub(super) fn choose(&self, u: f64) -> (u32, f64) {
-        let mut left = u * self.area();
+    pub(super) fn choose_part(&self, u: f64) -> (u32, f64) {
+        let mut rest = u * self.area();
         for face in 0..6 {
             let area = self.faces[face].area();
-            if left < area || face == 5 {
-                return (face as u32, (left / area).min(1.0));
+            if rest < area || face == 5 {
+                return (face as u32, (rest / area).min(1.0));
             }
-            left -= area;
+            rest -= area;
         }
         unreachable!("the last face takes what is left")
     }

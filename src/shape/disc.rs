@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 
 use super::Intersection;
 use super::affine_plane::AffinePlane;
-use crate::math::{Bounds, DMat3, DVec3, Ray, disk, level};
+use crate::math::{Bounds, DMat3, DVec3, Ray, horizontal_tangent, sample_disk};
 
 /// A flat disc; its front is the side `normal` points to. A non-uniform scale makes it an ellipse.
 ///
@@ -29,7 +29,7 @@ impl Disc {
                 let u = u.normalize();
                 (u - normal * u.dot(normal)).try_normalize()?
             }
-            None => level(normal),
+            None => horizontal_tangent(normal),
         };
         let plane = AffinePlane::new(center, u * radius, normal.cross(u) * radius, normal);
         Some(Self { plane })
@@ -48,6 +48,6 @@ impl Disc {
     }
 
     pub(super) fn sample_area(&self, u: [f64; 2]) -> DVec3 {
-        self.plane.at(disk(u).into())
+        self.plane.at(sample_disk(u).into())
     }
 }

@@ -3,71 +3,71 @@
 use crate::math::DVec2;
 
 /// Maximum number of corners of a polygon that is cut. The time grows with the square of the number.
-pub(super) const MOST_CORNERS: usize = 1 << 12;
+pub(super) const MAX_CORNERS: usize = 1 << 12;
 
-/// Returns the triangles of a counterclockwise polygon, given by its corners, each of which is off by up to `reach`.
+/// Returns the triangles of a counterclockwise polygon, given by its corners, each of which is off by up to `error`.
 /// Returns `None` if its sides cross. Every corner of the polygon is a corner of a triangle.
 ///
 /// A corner is an ear if the triangle with its two neighbors lies inside. It is cut off, and the remaining polygon has
 /// ears again (Meisters 1975, *Polygons Have Ears*). A polygon may touch itself, like one that goes around a hole.
-pub(super) fn ears(corners: &[DVec2], reach: f64) -> Option<Vec<[usize; 3]>> {
+pub(super) fn ears(corners: &[DVec2], error: f64) -> Option<Vec<[usize; 3]>> {
     let count = corners.len();
-    let ring = Ring { corners, reach, next: Vec::new(), before: Vec::new() };
-    if !(3..=MOST_CORNERS).contains(&count) || ring.crosses_itself() {
+    let ring = Ring { corners, error, next: Vec::new(), previous: Vec::new() };
+    if !(3..=MAX_CORNERS).contains(&count) || ring.crosses_itself() {
         return None;
     }
     let next = (1..count).chain([0]).collect();
-    let before = [count - 1].into_iter().chain(0..count - 1).collect();
-    let (mut ring, mut triangles, mut left, mut at) = (Ring { next, before, ..ring }, Vec::new(), count, 0);
+    let previous = [count - 1].into_iter().chain(0..count - 1).collect();
+    let (mut ring, mut triangles, mut remaining, mut at) = (Ring { next, previous, ..ring }, Vec::new(), count, 0);
     // Ears that are certain in spite of rounding are cut first. After a cut, only the two corners next to it can become
     // ears, apart from corners that others touch. Those are tested again in the next round.
     for is_sure in [true, true, true, false, false] {
-        let (mut asked, mut waiting) = (vec![false; count], left);
-        while left > 3 && waiting > 0 {
-            let [before, next] = [ring.before[at], ring.next[at]];
-            if asked[at] || !ring.is_ear(at, is_sure) {
-                asked[at] = true;
-                waiting -= 1;
+        let (mut tested, mut untested) = (vec![false; count], remaining);
+        while remaining > 3 && untested > 0 {
+            let [previous, next] = [ring.previous[at], ring.next[at]];
+            if tested[at] || !ring.is_ear(at, is_sure) {
+                tested[at] = true;
+                untested -= 1;
             } else {
-                triangles.push([before, at, next]);
-                (ring.next[before], ring.before[next]) = (next, before);
-                (asked[before], asked[next]) = (false, false);
-                left -= 1;
-                waiting = left;
+                triangles.push([previous, at, next]);
+                (ring.next[previous], ring.previous[next]) = (next, previous);
+                (tested[previous], tested[next]) = (false, false);
+                remaining -= 1;
+                untested = remaining;
             }
             at = next;
         }
     }
-    let last = [ring.before[at], at, ring.next[at]];
-    let (turn, rounding) = ring.turn(last.map(|corner| corners[corner]));
+    let last = [ring.previous[at], at, ring.next[at]];
+    let (orientation, rounding) = ring.orientation(last.map(|corner| corners[corner]));
     triangles.push(last);
-    (left == 3 && turn >= -rounding).then_some(triangles)
+    (remaining == 3 && orientation >= -rounding).then_some(triangles)
 }
 
 /// The corners that are not yet cut off.
 struct Ring<'a> {
     corners: &'a [DVec2],
-    reach: f64,
+    error: f64,
     next: Vec<usize>,
-    before: Vec<usize>,
+    previous: Vec<usize>,
 }
 
 impl Ring<'_> {
     /// Returns twice the area of a triangle, above 0 if it runs counterclockwise, and the largest value that rounding
     /// makes of 0.
-    fn turn(&self, [a, b, c]: [DVec2; 3]) -> (f64, f64) {
+    fn orientation(&self, [a, b, c]: [DVec2; 3]) -> (f64, f64) {
         let (along, across, opposite) = (b - a, c - a, c - b);
-        (along.perp_dot(across), self.reach * (along.length() + across.length() + opposite.length()))
+        (along.perp_dot(across), self.error * (along.length() + across.length() + opposite.length()))
     }
 
     /// Returns whether a corner can be cut off: with certainty if `is_sure`, otherwise as far as rounding allows one to
     /// tell.
     fn is_ear(&self, at: usize, is_sure: bool) -> bool {
-        let (first, last) = (self.before[at], self.next[at]);
+        let (first, last) = (self.previous[at], self.next[at]);
         let [a, b, c] = [first, at, last].map(|corner| self.corners[corner]);
         let is_left = |from: DVec2, to: DVec2, point: DVec2, sure: bool| {
-            let (turn, rounding) = self.turn([from, to, point]);
-            turn > if sure { rounding } else { -rounding }
+            let (orientation, rounding) = self.orientation([from, to, point]);
+            orientation > if sure { rounding } else { -rounding }
         };
         if !is_left(a, b, c, is_sure) {
             return false;
@@ -94,7 +94,7 @@ impl Ring<'_> {
 
     /// Returns whether two points lie on different sides of the line through two others.
     fn separates(&self, [from, to]: [DVec2; 2], points: [DVec2; 2]) -> bool {
-        let [(one, near), (other, far)] = points.map(|point| self.turn([from, to, point]));
+        let [(one, near), (other, far)] = points.map(|point| self.orientation([from, to, point]));
         one.abs() > near && other.abs() > far && (one > 0.0) != (other > 0.0)
     }
 }
@@ -122,11 +122,11 @@ mod tests {
     }
 
     /// Returns whether the polygon is cut, whichever corner is listed first.
-    fn is_cut_from_everywhere(corners: &[[f64; 2]]) -> bool {
+    fn is_cut_from_any_corner(corners: &[[f64; 2]]) -> bool {
         (0..corners.len()).all(|first| {
-            let turned: Vec<DVec2> =
+            let rotated: Vec<DVec2> =
                 corners.iter().cycle().skip(first).take(corners.len()).map(|&corner| corner.into()).collect();
-            is_cut(&turned)
+            is_cut(&rotated)
         })
     }
 
@@ -149,11 +149,11 @@ mod tests {
             [1.0, 1.0],
         ];
         for polygon in [&dart[..], &corner, &points_on_sides, &hole] {
-            assert!(is_cut_from_everywhere(polygon), "{polygon:?}");
+            assert!(is_cut_from_any_corner(polygon), "{polygon:?}");
         }
         let comb = |i: u32| [f64::from(i), if i.is_multiple_of(2) { 0.1 } else { 9.0 }];
         let comb: Vec<[f64; 2]> = (0..60).rev().map(comb).chain([[-1.0, -1.0], [60.0, -1.0]]).collect();
-        assert!(is_cut_from_everywhere(&comb));
+        assert!(is_cut_from_any_corner(&comb));
         let around = |i: u32, distance: f64| DVec2::from_angle(f64::from(i) / 40.0 * TAU) * distance;
         let out = (0..120).map(|i| around(i, 1.0 + f64::from(i) / 40.0));
         let spiral: Vec<DVec2> = out.chain((0..120).rev().map(|i| around(i, 0.7 + f64::from(i) / 40.0))).collect();
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn polygons_of_one_point_or_of_one_line_end() {
+    fn cutting_a_polygon_of_one_point_or_one_line_ends() {
         for count in [3, 4, 50] {
             let _ = ears(&vec![DVec2::ONE; count], 1e-15);
             let line: Vec<DVec2> = (0..count).map(|i| DVec2::splat((i * 7 % count) as f64)).collect();

@@ -38,11 +38,11 @@ impl Ellipsoid {
     }
 
     pub(super) fn point(&self, hit: DVec3) -> SurfacePoint {
-        self.point_at(self.unit_of(hit))
+        self.point_at(self.to_unit_sphere(hit))
     }
 
     /// Returns the point of the unit sphere that corresponds to a point of the surface.
-    pub(super) fn unit_of(&self, point: DVec3) -> DVec3 {
+    pub(super) fn to_unit_sphere(&self, point: DVec3) -> DVec3 {
         (self.inverse * (point - self.center)).normalize()
     }
 
@@ -102,12 +102,12 @@ impl Ellipsoid {
 
     /// Returns the density per steradian of one crossing.
     fn density_at(&self, ray: &Ray, t: f64) -> f64 {
-        let unit = self.unit_of(ray.at(t));
+        let unit = self.to_unit_sphere(ray.at(t));
         t * t / (4.0 * PI * self.area_normal(unit).dot(ray.direction).abs())
     }
 
     /// Returns the density per unit area of points that are uniform on the unit sphere.
-    pub(super) fn density_over(&self, unit: DVec3) -> f64 {
+    pub(super) fn area_density(&self, unit: DVec3) -> f64 {
         1.0 / (4.0 * PI * self.area_normal(unit).length())
     }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Vertices;
-use super::ears::{MOST_CORNERS, ears};
+use super::ears::{MAX_CORNERS, ears};
 use crate::math::{DVec2, DVec3};
 
 /// The triangles of faces. Each face is a fan about its first corner until it is cut.
@@ -11,7 +11,7 @@ use crate::math::{DVec2, DVec3};
 pub struct Faces {
     fans: Vec<[u32; 3]>,
     /// Ranges of the triangles of each face that has several.
-    several: Vec<Range<usize>>,
+    fan_ranges: Vec<Range<usize>>,
 }
 
 impl Faces {
@@ -21,7 +21,7 @@ impl Faces {
         let rest = corners.get(1..).unwrap_or_default();
         self.fans.extend(rest.windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
         if self.fans.len() > first + 1 {
-            self.several.push(first..self.fans.len());
+            self.fan_ranges.push(first..self.fans.len());
         }
     }
 
@@ -33,25 +33,25 @@ impl Faces {
     /// # Errors
     /// A sentence about a face that has too many corners.
     pub fn triangles(mut self, vertices: &Vertices) -> Result<Vec<[u32; 3]>, String> {
-        for place in self.several {
+        for place in self.fan_ranges {
             let fan = &mut self.fans[place];
             if fan.iter().flatten().any(|&corner| corner as usize >= vertices.count()) {
                 continue;
             }
             let Some(polygon) = FacePlane::new(fan, vertices) else { continue };
-            let (overlaps, flat) = (polygon.overlaps(fan), polygon.flat(fan));
+            let (overlaps, flat) = (polygon.has_flipped(fan), polygon.count_flat(fan));
             if !overlaps && flat == 0 {
                 continue;
             }
             let corners: Vec<u32> = fan[0][..2].iter().copied().chain(fan.iter().map(|face| face[2])).collect();
-            if overlaps && corners.len() > MOST_CORNERS {
+            if overlaps && corners.len() > MAX_CORNERS {
                 let count = corners.len();
-                return Err(format!("a face that is not convex has {count} corners, more than {MOST_CORNERS}"));
+                return Err(format!("a face that is not convex has {count} corners, more than {MAX_CORNERS}"));
             }
             let points: Vec<DVec3> = corners.iter().map(|&corner| vertices.at(corner)).collect();
-            let Some(cut) = ears(&seen_along(polygon.normal, &points), polygon.reach) else { continue };
+            let Some(cut) = ears(&project_along(polygon.normal, &points), polygon.error) else { continue };
             let cut: Vec<[u32; 3]> = cut.into_iter().map(|face| face.map(|corner| corners[corner])).collect();
-            if overlaps || polygon.flat(&cut) < flat {
+            if overlaps || polygon.count_flat(&cut) < flat {
                 fan.copy_from_slice(&cut);
             }
         }
@@ -63,7 +63,7 @@ impl Faces {
 struct FacePlane<'v> {
     vertices: &'v Vertices,
     normal: DVec3,
-    reach: f64,
+    error: f64,
 }
 
 impl<'v> FacePlane<'v> {
@@ -73,50 +73,54 @@ impl<'v> FacePlane<'v> {
     /// Characterization of Ten Hidden-Surface Algorithms*), which accounts for the whole polygon.
     fn new(fan: &[[u32; 3]], vertices: &'v Vertices) -> Option<Self> {
         let points = || fan.iter().flatten().map(|&corner| vertices.at(corner));
-        let mut polygon = Self { vertices, normal: DVec3::ZERO, reach: reach(points(), vertices) };
-        polygon.normal = fan.iter().map(|face| polygon.turned(face).0).sum::<DVec3>().try_normalize()?;
+        let mut polygon = Self { vertices, normal: DVec3::ZERO, error: error(points(), vertices) };
+        polygon.normal = fan.iter().map(|face| polygon.area_normal(face).0).sum::<DVec3>().try_normalize()?;
         Some(polygon)
     }
 
     /// Returns the normal of a triangle, with twice its area as length, and the length that rounding makes of 0.
-    fn turned(&self, face: &[u32; 3]) -> (DVec3, f64) {
+    fn area_normal(&self, face: &[u32; 3]) -> (DVec3, f64) {
         let [a, b, c] = face.map(|corner| self.vertices.at(corner));
-        let rounding = self.reach * ((b - a).length() + (c - b).length() + (a - c).length());
+        let rounding = self.error * ((b - a).length() + (c - b).length() + (a - c).length());
         ((b - a).cross(c - a), rounding)
     }
 
     /// Returns whether one of the triangles faces the other way.
-    fn overlaps(&self, faces: &[[u32; 3]]) -> bool {
-        faces.iter().map(|face| self.turned(face)).any(|(normal, rounding)| normal.dot(self.normal) < -rounding)
+    fn has_flipped(&self, faces: &[[u32; 3]]) -> bool {
+        faces.iter().map(|face| self.area_normal(face)).any(|(normal, rounding)| normal.dot(self.normal) < -rounding)
     }
 
     /// Counts the triangles that have no area.
-    fn flat(&self, faces: &[[u32; 3]]) -> usize {
-        faces.iter().map(|face| self.turned(face)).filter(|(normal, rounding)| normal.length() <= *rounding).count()
+    fn count_flat(&self, faces: &[[u32; 3]]) -> usize {
+        faces
+            .iter()
+            .map(|face| self.area_normal(face))
+            .filter(|(normal, rounding)| normal.length() <= *rounding)
+            .count()
     }
 }
 
 /// Returns how far points may be off because of the precision of their coordinates, including the rounding in what is
 /// computed from them.
-fn reach(points: impl Iterator<Item = DVec3>, vertices: &Vertices) -> f64 {
-    let digits = match vertices {
+fn error(points: impl Iterator<Item = DVec3>, vertices: &Vertices) -> f64 {
+    let epsilon = match vertices {
         Vertices::Single(_) => f64::from(f32::EPSILON),
         Vertices::Double(_) => f64::EPSILON,
     };
-    2.0 * digits * points.map(|point| point.abs().max_element()).fold(0.0, f64::max)
+    2.0 * epsilon * points.map(|point| point.abs().max_element()).fold(0.0, f64::max)
 }
 
 /// Projects points along a direction, counterclockwise about it. Points in a plane across an axis keep their
 /// coordinates to the last bit.
-fn seen_along(normal: DVec3, points: &[DVec3]) -> Vec<DVec2> {
+fn project_along(normal: DVec3, points: &[DVec3]) -> Vec<DVec2> {
     let axis = normal.abs().max_position();
     let (mut across, mut up) = ((axis + 1) % 3, (axis + 2) % 3);
     if normal[axis] < 0.0 {
         (across, up) = (up, across);
     }
     let [right, high] = [across, up].map(|other| normal[other] / normal[axis]);
-    let seen = |point: &DVec3| DVec2::new(point[across] - point[axis] * right, point[up] - point[axis] * high);
-    points.iter().map(seen).collect()
+    let project = |point: &DVec3| DVec2::new(point[across] - point[axis] * right, point[up] - point[axis] * high);
+    points.iter().map(project).collect()
 }
 
 #[cfg(test)]
@@ -211,7 +215,7 @@ mod tests {
 
     #[test]
     fn a_face_with_countless_corners_is_cut_only_where_it_is_convex() {
-        let count = MOST_CORNERS as u32 + 1;
+        let count = MAX_CORNERS as u32 + 1;
         let around = |i: u32| DVec2::from_angle(f64::from(i) / f64::from(count) * std::f64::consts::TAU).extend(0.0);
         let mut points: Vec<[f64; 3]> = (0..count).map(|i| around(i).to_array()).collect();
         assert_eq!(cut(&points, false).0, fan(count));

@@ -13,12 +13,12 @@ use super::bvh::GROUP;
 use crate::math::{Bounds, DVec3, gamma};
 
 /// Minimum gain of a cut, in multiples of half the surface area of a box that the triangle would fill.
-const LEAST_GAIN: f64 = 8.0;
-/// Maximum number of cuts per triangle, on average over a mesh, unless these are more than `FREE` in all.
-const MOST_CUTS: usize = 8;
+const MIN_GAIN: f64 = 8.0;
+/// Maximum number of cuts per triangle, on average over a mesh, unless these are more than `FREE_CUTS` in all.
+const MAX_CUTS: usize = 8;
 /// Number of cuts that are allowed in any mesh. It is limited because each cut takes some 200 bytes. A mesh of more
 /// triangles than this may have one cut per triangle.
-const FREE: usize = 1 << 20;
+const FREE_CUTS: usize = 1 << 20;
 
 /// The part of a triangle that lies in a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ struct Fragment {
 }
 
 /// Builds the tree over some triangles, and cuts those that fill their boxes badly.
-pub(super) fn tree(count: u32, corners: impl Fn(u32) -> [DVec3; 3]) -> Bvh {
+pub(super) fn build_tree(count: u32, corners: impl Fn(u32) -> [DVec3; 3]) -> Bvh {
     let cut = fragments(count, &corners);
     let is_whole = |triangle: &u32| cut.binary_search_by_key(triangle, |fragment| fragment.triangle).is_err();
     let whole = (0..count).filter(is_whole).map(|triangle| (triangle, Bounds::around(corners(triangle))));
@@ -37,22 +37,22 @@ pub(super) fn tree(count: u32, corners: impl Fn(u32) -> [DVec3; 3]) -> Bvh {
 
 /// Returns the fragments of the triangles that are worth cutting, sorted by triangle.
 fn fragments(count: u32, corners: impl Fn(u32) -> [DVec3; 3]) -> Vec<Fragment> {
-    let well = |triangle| filled(corners(triangle));
-    let mean = (0..count).map(well).sum::<f64>() / f64::from(count);
+    let ideal = |triangle| ideal_half_area(corners(triangle));
+    let mean = (0..count).map(ideal).sum::<f64>() / f64::from(count);
     let cut = |fragment: Fragment| Cut::new(fragment, &corners(fragment.triangle));
-    let pays = |cut: &Cut| cut.gain > mean.max(LEAST_GAIN * well(cut.fragment.triangle));
+    let is_worthwhile = |cut: &Cut| cut.gain > mean.max(MIN_GAIN * ideal(cut.fragment.triangle));
     let whole = |triangle| Fragment { triangle, bounds: Bounds::around(corners(triangle)) };
     // A cut cannot save more than the surface area of the whole box.
     let large = (0..count).map(whole).filter(|fragment| fragment.bounds.half_area() > mean);
-    let mut open: BinaryHeap<Cut> = large.map(cut).filter(pays).collect();
-    let most = open.len() + (MOST_CUTS * count as usize).min(FREE.max(count as usize));
+    let mut open: BinaryHeap<Cut> = large.map(cut).filter(is_worthwhile).collect();
+    let max_fragments = open.len() + (MAX_CUTS * count as usize).min(FREE_CUTS.max(count as usize));
     let mut done = Vec::new();
-    while open.len() + done.len() < most
+    while open.len() + done.len() < max_fragments
         && let Some(Cut { fragment: Fragment { triangle, .. }, halves, .. }) = open.pop()
     {
         for bounds in halves.into_iter().filter(|half| !half.is_empty()) {
             let next = cut(Fragment { triangle, bounds });
-            if pays(&next) { open.push(next) } else { done.push(next.fragment) }
+            if is_worthwhile(&next) { open.push(next) } else { done.push(next.fragment) }
         }
     }
     done.extend(open.into_iter().map(|cut| cut.fragment));
@@ -62,7 +62,7 @@ fn fragments(count: u32, corners: impl Fn(u32) -> [DVec3; 3]) -> Vec<Fragment> {
 
 /// Returns half the surface area that a triangle's box would have if the triangle lay along two axes, with a right
 /// angle at a corner of the box.
-fn filled([a, b, c]: [DVec3; 3]) -> f64 {
+fn ideal_half_area([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).abs().element_sum()
 }
 
@@ -136,7 +136,7 @@ impl Ord for Cut {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Frame, triangle_coordinates};
+    use crate::math::{Frame, sample_triangle};
     use libm::{cos, sin};
 
     /// Returns a pipe along a direction, with two triangles per side.
@@ -176,10 +176,9 @@ mod tests {
         let fragments = cut(&triangles);
         let mut number = 0.5;
         for (index, points) in (0..).zip(&triangles) {
-            let of_this: Vec<Fragment> =
-                fragments.iter().filter(|fragment| fragment.triangle == index).copied().collect();
-            assert!(of_this.len() > 1);
-            for fragment in &of_this {
+            let own: Vec<Fragment> = fragments.iter().filter(|fragment| fragment.triangle == index).copied().collect();
+            assert!(own.len() > 1);
+            for fragment in &own {
                 assert_eq!(fragment.bounds.intersection(Bounds::around(*points)), fragment.bounds);
             }
             for _ in 0..1000 {
@@ -187,13 +186,13 @@ mod tests {
                     number = (number + 0.5_f64.sqrt()).fract();
                     number
                 };
-                let [u, v] = triangle_coordinates([next(), next()]);
+                let [u, v] = sample_triangle([next(), next()]);
                 let point = points[0] + (points[1] - points[0]) * u + (points[2] - points[0]) * v;
                 let holds = |fragment: &Fragment| {
                     let Bounds { min, max } = fragment.bounds.padded(8);
                     point.cmpge(min).all() && point.cmple(max).all()
                 };
-                assert!(of_this.iter().any(holds), "{point}");
+                assert!(own.iter().any(holds), "{point}");
             }
         }
     }

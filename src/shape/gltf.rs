@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use super::gltf_buffer::{Accessor, Buffer, BufferView, Data, Store};
+use super::gltf_buffer::{Accessor, AccessorData, Buffer, BufferView, Store};
 use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
 use crate::math::{DMat3, DVec3, Transform};
@@ -84,7 +84,7 @@ fn triangles() -> u32 {
 }
 
 /// Prefixes of the names of required extensions that only change appearance.
-const HARMLESS: [&str; 4] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_punctual"];
+const HARMLESS_PREFIXES: [&str; 4] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_punctual"];
 /// Extension that stores positions, normals and texture coordinates as integers. They are read in every file.
 const QUANTIZED: &str = "KHR_mesh_quantization";
 /// Extension that transforms the texture coordinates of materials.
@@ -94,7 +94,7 @@ const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// Tolerance for the last row of an affine matrix, 0, 0, 0, 1, if the matrix was computed from others in 32 bits.
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 /// Maximum number of triangles of a file. A small file may place a large mesh as often as it likes.
-const MOST: usize = 1 << 27;
+const MAX_TRIANGLES: usize = 1 << 27;
 
 /// Reads the triangles of a file's default scene, placed by its nodes.
 pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
@@ -108,25 +108,26 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     if !document.asset.version.starts_with("2.") {
         return Err(format!("it is glTF {:?}, not 2.0", document.asset.version));
     }
-    let refused = |name: &&String| **name != QUANTIZED && !HARMLESS.iter().any(|start| name.starts_with(start));
-    if let Some(name) = document.extensions_required.iter().find(refused) {
+    let is_unsupported =
+        |name: &&String| **name != QUANTIZED && !HARMLESS_PREFIXES.iter().any(|start| name.starts_with(start));
+    if let Some(name) = document.extensions_required.iter().find(is_unsupported) {
         return Err(format!("it needs the extension {name}, which Abbe does not read"));
     }
-    let placed = document.placed()?;
+    let placed = document.placed_meshes()?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let store = Store::open(&document.buffers, folder, binary)?;
     let mut file = document.read(&placed, &store, smooth)?;
     file.materials = document.materials.len();
     let uses = |extension: &str| document.extensions_used.iter().any(|name| name == extension);
     let has_morphs = document.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|p| !p.targets.is_empty());
-    for (what, there) in [
+    for (what, is_present) in [
         ("animations", !document.animations.is_empty()),
         ("skins", !document.skins.is_empty()),
         ("morph targets", has_morphs),
         ("copies by EXT_mesh_gpu_instancing", uses(INSTANCING)),
         ("texture transforms", uses(TEXTURE_TRANSFORM) && !file.attributes.coordinates.is_empty()),
     ] {
-        file.ignored.extend(there.then_some(what));
+        file.ignored.extend(is_present.then_some(what));
     }
     file.others = store.files;
     Ok(file)
@@ -152,21 +153,21 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
 
 impl Document {
     /// Returns the meshes of the default scene, each with the map from its node's space to the scene's.
-    fn placed(&self) -> Result<Vec<(&MeshText, Transform)>, String> {
+    fn placed_meshes(&self) -> Result<Vec<(&MeshText, Transform)>, String> {
         let scene = match self.scene {
             Some(scene) => Some(self.scenes.get(scene).ok_or_else(|| format!("there is no scene {scene}"))?),
             None => self.scenes.first(),
         };
         let roots = scene.map_or_else(|| self.roots(), |scene| scene.nodes.clone());
-        let mut seen = vec![false; self.nodes.len()];
+        let mut visited = vec![false; self.nodes.len()];
         let mut placed = Vec::new();
         let mut open: Vec<(usize, Transform)> = roots.iter().rev().map(|&node| (node, Transform::IDENTITY)).collect();
-        while let Some((number, above)) = open.pop() {
+        while let Some((number, parent_map)) = open.pop() {
             let node = self.nodes.get(number).ok_or_else(|| format!("there is no node {number}"))?;
-            if std::mem::replace(&mut seen[number], true) {
+            if std::mem::replace(&mut visited[number], true) {
                 return Err(format!("node {number} is reached twice: nodes must form a tree"));
             }
-            let map = node.map().ok_or_else(|| format!("the matrix of node {number} is not affine"))?.then(&above);
+            let map = node.map().ok_or_else(|| format!("the matrix of node {number} is not affine"))?.then(&parent_map);
             if let Some(mesh) = node.mesh {
                 placed.push((self.meshes.get(mesh).ok_or_else(|| format!("there is no mesh {mesh}"))?, map));
             }
@@ -185,8 +186,8 @@ impl Document {
     }
 
     fn read(&self, placed: &[(&MeshText, Transform)], store: &Store, smooth: bool) -> Result<MeshFile, String> {
-        let as_written = placed.iter().all(|(_, map)| *map == Transform::IDENTITY);
-        let mut vertices = if as_written { Vertices::default() } else { Vertices::Double(Vec::new()) };
+        let all_identity = placed.iter().all(|(_, map)| *map == Transform::IDENTITY);
+        let mut vertices = if all_identity { Vertices::default() } else { Vertices::Double(Vec::new()) };
         let (mut attributes, mut has_normals, mut has_coordinates) = (Attributes::default(), false, false);
         let mut faces = Vec::<[u32; 3]>::new();
         for (mesh, map) in placed {
@@ -194,9 +195,9 @@ impl Document {
                 let Some(position) = primitive.attributes.position else { continue };
                 let points: Vec<[f32; 3]> = self.accessor(position, store)?.floats()?;
                 let corners = self.corners(primitive, points.len(), store)?;
-                let (first, triangles) = (vertices.count(), cut(&corners, primitive.mode).count());
-                if faces.len() + triangles > MOST || first + points.len() > MOST {
-                    return Err(format!("its nodes place more than {MOST} triangles or vertices"));
+                let (first, triangles) = (vertices.count(), assemble(&corners, primitive.mode).count());
+                if faces.len() + triangles > MAX_TRIANGLES || first + points.len() > MAX_TRIANGLES {
+                    return Err(format!("its nodes place more than {MAX_TRIANGLES} triangles or vertices"));
                 }
                 let own = self.attributes(primitive, points.len(), store, smooth)?;
                 has_normals |= smooth && primitive.attributes.normal.is_some();
@@ -205,7 +206,7 @@ impl Document {
                 attributes.normals.extend(own.transformed(map).normals);
                 attributes.coordinates.extend(own.coordinates);
                 let place = |corner: u32| corner + first as u32;
-                faces.extend(cut(&corners, primitive.mode).map(|face| map.wound(face.map(place))));
+                faces.extend(assemble(&corners, primitive.mode).map(|face| map.fix_winding(face.map(place))));
                 match &mut vertices {
                     Vertices::Single(all) => all.extend(points),
                     Vertices::Double(all) => all.extend(points.iter().map(|p| map.point(p.map(f64::from).into()))),
@@ -263,14 +264,14 @@ impl Document {
         Ok(own)
     }
 
-    fn accessor<'a>(&'a self, number: usize, store: &'a Store) -> Result<Data<'a>, String> {
+    fn accessor<'a>(&'a self, number: usize, store: &'a Store) -> Result<AccessorData<'a>, String> {
         let accessor = self.accessors.get(number).ok_or_else(|| format!("there is no accessor {number}"))?;
         Ok(accessor.data(number, &self.buffer_views, store))
     }
 }
 
 /// Returns the triangles of a list, a strip or a fan of corners (section 3.7.2.1 of the specification).
-fn cut(corners: &[u32], mode: u32) -> impl Iterator<Item = [u32; 3]> + '_ {
+fn assemble(corners: &[u32], mode: u32) -> impl Iterator<Item = [u32; 3]> + '_ {
     let count = if mode == triangles() { corners.len() / 3 } else { corners.len().saturating_sub(2) };
     (0..count).map(move |i| {
         match mode {

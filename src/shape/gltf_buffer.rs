@@ -90,7 +90,7 @@ impl Store {
                             .ok_or_else(|| format!("buffer {number} is not base64 text"))?
                     }
                     None => {
-                        let path = folder.join(unescaped(uri));
+                        let path = folder.join(percent_decoded(uri));
                         if !path.is_file() {
                             return Err(format!("there is no file {uri} beside it"));
                         }
@@ -101,8 +101,8 @@ impl Store {
                 },
             };
             if bytes.len() < buffer.byte_length {
-                let (has, wanted) = (bytes.len(), buffer.byte_length);
-                return Err(format!("buffer {number} has {has} bytes, not {wanted}"));
+                let (has, declared) = (bytes.len(), buffer.byte_length);
+                return Err(format!("buffer {number} has {has} bytes, not {declared}"));
             }
             store.buffers.push(bytes);
         }
@@ -111,7 +111,7 @@ impl Store {
 }
 
 /// An accessor with the views and buffers that it reads from.
-pub(super) struct Data<'a> {
+pub(super) struct AccessorData<'a> {
     accessor: &'a Accessor,
     number: usize,
     views: &'a [BufferView],
@@ -119,8 +119,8 @@ pub(super) struct Data<'a> {
 }
 
 impl Accessor {
-    pub(super) fn data<'a>(&'a self, number: usize, views: &'a [BufferView], store: &'a Store) -> Data<'a> {
-        Data { accessor: self, number, views, store }
+    pub(super) fn data<'a>(&'a self, number: usize, views: &'a [BufferView], store: &'a Store) -> AccessorData<'a> {
+        AccessorData { accessor: self, number, views, store }
     }
 }
 
@@ -132,7 +132,7 @@ const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
 /// Returns the number of bytes of a component.
-fn size(component_type: u32) -> usize {
+fn component_size(component_type: u32) -> usize {
     match component_type {
         BYTE | UNSIGNED_BYTE => 1,
         SHORT | UNSIGNED_SHORT => 2,
@@ -140,7 +140,7 @@ fn size(component_type: u32) -> usize {
     }
 }
 
-impl<'a> Data<'a> {
+impl<'a> AccessorData<'a> {
     /// Reads entries of K numbers. Normalized integers stand for 0 to 1, or for -1 to 1 if they are signed (section
     /// 3.6.2.2 of the specification).
     pub(super) fn floats<const K: usize>(&self) -> Result<Vec<[f32; K]>, String> {
@@ -161,7 +161,7 @@ impl<'a> Data<'a> {
         if !is_vector {
             return Err(format!("accessor {} is of type {kind:?}, not VEC{K}", self.number));
         }
-        let step = size(*component_type);
+        let step = component_size(*component_type);
         self.entries(K * step, |entry| std::array::from_fn(|i| read(&entry[i * step..])))
     }
 
@@ -171,7 +171,7 @@ impl<'a> Data<'a> {
         let (true, Some(read)) = (kind == "SCALAR", whole_number(*component_type)) else {
             return Err(format!("accessor {} does not hold whole numbers", self.number));
         };
-        self.entries(size(*component_type), read)
+        self.entries(component_size(*component_type), read)
     }
 
     fn entries<T>(&self, width: usize, read: impl Fn(&[u8]) -> T) -> Result<Vec<T>, String> {
@@ -191,7 +191,8 @@ impl<'a> Data<'a> {
         if let Some(Sparse { count, indices, values }) = sparse {
             let index = whole_number(indices.component_type)
                 .ok_or_else(|| format!("accessor {} has no integer indices", self.number))?;
-            let places = self.view(indices.buffer_view, indices.byte_offset, *count, size(indices.component_type))?;
+            let places =
+                self.view(indices.buffer_view, indices.byte_offset, *count, component_size(indices.component_type))?;
             for (place, value) in places.zip(self.view(values.buffer_view, values.byte_offset, *count, width)?) {
                 let place = index(place) as usize;
                 *entries.get_mut(place).ok_or_else(|| format!("accessor {} has no entry {place}", self.number))? =
@@ -217,9 +218,9 @@ impl<'a> Data<'a> {
         let bytes = bytes.ok_or_else(|| format!("buffer view {number} reaches beyond buffer {}", view.buffer))?;
         let stride = view.byte_stride.unwrap_or(width);
         let last = count.checked_sub(1).map_or(Some(0), |steps| steps.checked_mul(stride)?.checked_add(width));
-        let within =
+        let is_within =
             stride > 0 && last.and_then(|last| last.checked_add(offset)).is_some_and(|last| last <= bytes.len());
-        if !within {
+        if !is_within {
             return Err(format!("accessor {} reaches beyond buffer view {number}", self.number));
         }
         Ok((0..count).map(move |i| &bytes[offset + i * stride..][..width]))
@@ -236,7 +237,7 @@ fn whole_number(component_type: u32) -> Option<fn(&[u8]) -> u32> {
 }
 
 /// Decodes %20 and the like in an address into the bytes that they stand for (RFC 3986, section 2.1).
-fn unescaped(uri: &str) -> String {
+fn percent_decoded(uri: &str) -> String {
     let (mut bytes, mut rest) = (Vec::new(), uri.as_bytes());
     while let Some((&first, after)) = rest.split_first() {
         let digits = after.get(..2).filter(|digits| first == b'%' && digits.iter().all(u8::is_ascii_hexdigit));
@@ -254,6 +255,6 @@ mod tests {
 
     #[test]
     fn two_hexadecimal_digits_behind_a_percent_sign_are_a_byte_and_nothing_else_is() {
-        assert_eq!(unescaped("a%20b%c3%A4%+5%2%"), "a b\u{e4}%+5%2%");
+        assert_eq!(percent_decoded("a%20b%c3%A4%+5%2%"), "a b\u{e4}%+5%2%");
     }
 }

@@ -8,12 +8,12 @@ use crate::math::{Bounds, DVec3};
 
 /// Minimum gain of a further piece, in multiples of half the surface area of a box that the shape would fill. It is
 /// smaller than for triangles, because several of those are tested at once.
-const LEAST_GAIN: f64 = 2.0;
+const MIN_GAIN: f64 = 2.0;
 /// Maximum number of pieces of a shape.
-const MOST: usize = 16;
+const MAX_PIECES: usize = 16;
 /// Maximum number of pieces in a scene, because their boxes take memory. If this leaves fewer than two pieces for each
 /// shape, each may still have two.
-const FREE: usize = 1 << 20;
+const MAX_SCENE_PIECES: usize = 1 << 20;
 
 /// A volume that contains a shape, which may be diagonal: `center`, plus or minus up to each of three axes. If
 /// `is_round`, it is the ellipsoid with these axes, otherwise all that lies between.
@@ -35,15 +35,16 @@ impl Hull {
     /// Returns the number of pieces that are worth their boxes in a scene of `shapes` shapes.
     pub(super) fn count(&self, shapes: usize) -> usize {
         let [a, b, c] = self.axes.map(|axis| 2.0 * axis.length());
-        let (most, least) = (MOST.min((FREE / shapes.max(1)).max(2)), LEAST_GAIN * (a * b + b * c + c * a));
+        let (max_pieces, min_gain) =
+            (MAX_PIECES.min((MAX_SCENE_PIECES / shapes.max(1)).max(2)), MIN_GAIN * (a * b + b * c + c * a));
         let surface = |count| self.pieces(count).map(|piece| piece.half_area()).sum::<f64>();
-        let (mut count, mut now) = (1, surface(1));
-        while 2 * count <= most {
+        let (mut count, mut current) = (1, surface(1));
+        while 2 * count <= max_pieces {
             let next = surface(2 * count);
-            if now - next <= count as f64 * least {
+            if current - next <= count as f64 * min_gain {
                 break;
             }
-            (count, now) = (2 * count, next);
+            (count, current) = (2 * count, next);
         }
         count
     }
@@ -73,7 +74,7 @@ mod tests {
 
     /// Returns the surface area of the boxes of a shape, divided by that of a single box. The shape has three half axes
     /// of the given lengths in a frame.
-    fn left(axes: [f64; 3], frame: &Frame, is_round: bool) -> f64 {
+    fn area_ratio(axes: [f64; 3], frame: &Frame, is_round: bool) -> f64 {
         let [x, y, z] = axes;
         let axes = [DVec3::X * x, DVec3::Y * y, DVec3::Z * z].map(|axis| frame.to_world(axis));
         let hull = Hull::new(DVec3::ONE, axes, is_round, DVec3::ZERO);
@@ -87,12 +88,12 @@ mod tests {
         let aslant = Frame::about(DVec3::new(0.5, 0.6, 0.7).normalize());
         let straight = Frame::about(DVec3::Z);
         for is_round in [false, true] {
-            let left = |axes, frame: &Frame| left(axes, frame, is_round);
-            assert!(left([0.001, 0.001, 1.0], &aslant) < 0.1);
-            assert!(left([0.01, 0.0, 1.0], &aslant) < 0.4);
-            assert!(left([0.1, 0.1, 1.0], &aslant) < 0.8);
+            let area_ratio = |axes, frame: &Frame| area_ratio(axes, frame, is_round);
+            assert!(area_ratio([0.001, 0.001, 1.0], &aslant) < 0.1);
+            assert!(area_ratio([0.01, 0.0, 1.0], &aslant) < 0.4);
+            assert!(area_ratio([0.1, 0.1, 1.0], &aslant) < 0.8);
             for (axes, frame) in [([0.001, 0.001, 1.0], &straight), ([0.5, 0.5, 1.0], &aslant)] {
-                assert_eq!(left(axes, frame), 1.0, "{axes:?}");
+                assert_eq!(area_ratio(axes, frame), 1.0, "{axes:?}");
             }
         }
     }

@@ -16,25 +16,25 @@ pub struct Instance {
     to_world: Transform,
     to_object: Transform,
     /// Bound, in the mesh's space, of how far the map to the world and back moves a point of the mesh.
-    mismatch: DVec3,
+    round_trip_error: DVec3,
     bounds: Bounds,
 }
 
 /// Largest entry of an inverse map, which stretches the direction of a ray. Boxes are tested with the direction's
 /// reciprocal in 32 bits, which has the usual rounding only above 2^-126. Up to three entries add up in a coordinate of
 /// the direction.
-const LARGEST: f64 = 1e37;
+const MAX_INVERSE: f64 = 1e37;
 
 impl Instance {
     /// Creates the instance of a mesh under an invertible map. Returns `None` if the inverse map is too large for
     /// 32-bit numbers.
     pub fn new(mesh: Arc<Mesh>, to_world: Transform) -> Option<Self> {
-        let to_object = to_world.inverse().filter(|back| back.size() <= LARGEST)?;
+        let to_object = to_world.inverse().filter(|back| back.size() <= MAX_INVERSE)?;
         let own = mesh.bounds();
         let reach = own.min.abs().max(own.max.abs());
-        let mismatch = to_world.mismatch(&to_object, reach);
+        let round_trip_error = to_world.round_trip_error(&to_object, reach);
         let around = Bounds::around(mesh.vertices().map(|vertex| to_world.point(vertex)));
-        let mut placed = Self { mesh, to_world, to_object, mismatch, bounds: around };
+        let mut placed = Self { mesh, to_world, to_object, round_trip_error, bounds: around };
         // A ray that meets the box may have come from as far away as the box is wide, so the rounding of its direction
         // counts too.
         let pad = placed.error(reach, around.min.abs().max(around.max.abs()), reach * gamma(16));
@@ -63,27 +63,27 @@ impl Instance {
         &self.mesh
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Intersection> {
-        self.mesh.intersect(&self.own(ray), t_max, left)
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64, from: Option<u32>) -> Option<Intersection> {
+        self.mesh.intersect(&self.object_ray(ray), t_max, from)
     }
 
     pub(super) fn is_crossed(
         &self,
         ray: &Ray,
         t_max: f64,
-        left: Option<u32>,
-        counts: impl Fn(u32, f64) -> bool,
+        from: Option<u32>,
+        accept: impl Fn(u32, f64) -> bool,
     ) -> bool {
-        self.mesh.is_crossed(&self.own(ray), t_max, left, counts)
+        self.mesh.is_crossed(&self.object_ray(ray), t_max, from, accept)
     }
 
     /// Returns the crossing with one triangle alone.
     pub(super) fn intersect_part(&self, ray: &Ray, part: u32) -> Option<Intersection> {
-        self.mesh.triangle(part).intersect(&self.own(ray), f64::INFINITY)
+        self.mesh.triangle(part).intersect(&self.object_ray(ray), f64::INFINITY)
     }
 
     /// Returns the ray in the mesh's space.
-    fn own(&self, ray: &Ray) -> Ray {
+    fn object_ray(&self, ray: &Ray) -> Ray {
         Ray { origin: self.to_object.point(ray.origin), direction: self.to_object.vector(ray.direction) }
     }
 
@@ -92,13 +92,13 @@ impl Instance {
     pub(super) fn point(&self, intersection: &Intersection) -> SurfacePoint {
         let SurfacePoint { position, error, normal, shading } = self.mesh.point(intersection);
         let placed = self.to_world.point(position);
-        let turned = |normal: DVec3| {
-            let turned = self.to_object.transposed(normal);
-            unit(turned / turned.abs().max_element())
+        let mapped_normal = |normal: DVec3| {
+            let mapped_normal = self.to_object.mul_transposed(normal);
+            unit(mapped_normal / mapped_normal.abs().max_element())
         };
         let error = self.error(position.abs(), placed.abs(), error);
-        let (flat, is_flat) = (turned(normal), shading == normal);
-        let shading = if is_flat { flat } else { turned(shading) };
+        let (flat, is_flat) = (mapped_normal(normal), shading == normal);
+        let shading = if is_flat { flat } else { mapped_normal(shading) };
         SurfacePoint { position: placed, error, normal: flat, shading }
     }
 
@@ -110,8 +110,8 @@ impl Instance {
     /// arrives at a point that differs from q by |N M - 1| |q| + |N t + s|. These lengths are in the mesh's space, as e
     /// is, and are multiplied by |M| in the world.
     fn error(&self, own: DVec3, placed: DVec3, error: DVec3) -> DVec3 {
-        let there = error + self.mismatch + self.to_object.rounding(placed) * 1.25;
-        (self.to_world.magnitudes() * there + self.to_world.rounding(own)) * (1.0 + gamma(16))
+        let object_error = error + self.round_trip_error + self.to_object.rounding_error(placed) * 1.25;
+        (self.to_world.magnitudes() * object_error + self.to_world.rounding_error(own)) * (1.0 + gamma(16))
     }
 
     pub(super) fn bounds(&self) -> Bounds {

@@ -7,7 +7,7 @@ use super::{
     Ball, Cube, Density, Disc, Ellipsoid, Instance, Intersection, Mesh, Plane, Polygon, Quad, ShapeSample, Sphere,
     SurfacePoint, Triangle,
 };
-use crate::math::{Bounds, DVec3, Ray, Transform, ball_surface, disk, gamma, triangle_coordinates};
+use crate::math::{Bounds, DVec3, Ray, Transform, gamma, sample_disk, sample_sphere, sample_triangle};
 
 /// A surface.
 #[derive(Clone, Debug)]
@@ -38,8 +38,8 @@ impl Shape {
         self.intersect_from(ray, t_max, None)
     }
 
-    /// Returns the nearest crossing with 0 < t <= `t_max` of a ray that may leave the triangle `left` of the shape.
-    pub fn intersect_from(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Intersection> {
+    /// Returns the nearest crossing with 0 < t <= `t_max` of a ray that may leave the triangle `from` of the shape.
+    pub fn intersect_from(&self, ray: &Ray, t_max: f64, from: Option<u32>) -> Option<Intersection> {
         match self {
             Self::Plane(plane) => plane.intersect(ray, t_max),
             Self::Triangle(triangle) => triangle.intersect(ray, t_max),
@@ -48,15 +48,15 @@ impl Shape {
             Self::Disc(disc) => disc.intersect(ray, t_max),
             Self::Quad(quad) => quad.intersect(ray, t_max),
             Self::Cube(cube) => cube.intersect(ray, t_max),
-            Self::Mesh(mesh) => mesh.intersect(ray, t_max, left),
-            Self::Instance(instance) => instance.intersect(ray, t_max, left),
+            Self::Mesh(mesh) => mesh.intersect(ray, t_max, from),
+            Self::Instance(instance) => instance.intersect(ray, t_max, from),
         }
     }
 
-    /// Returns whether a ray has a crossing with 0 < t <= `t_max`. The ray may leave the triangle `left` of the shape.
-    pub fn is_crossed(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> bool {
+    /// Returns whether a ray has a crossing with 0 < t <= `t_max`. The ray may leave the triangle `from` of the shape.
+    pub fn is_crossed(&self, ray: &Ray, t_max: f64, from: Option<u32>) -> bool {
         if self.has_triangles() {
-            self.are_triangles_crossed(ray, t_max, left, |_, _| true)
+            self.are_triangles_crossed(ray, t_max, from, |_, _| true)
         } else {
             self.intersect_from(ray, t_max, None).is_some()
         }
@@ -67,12 +67,12 @@ impl Shape {
         &self,
         ray: &Ray,
         t_max: f64,
-        left: Option<u32>,
-        counts: impl Fn(u32, f64) -> bool,
+        from: Option<u32>,
+        accept: impl Fn(u32, f64) -> bool,
     ) -> bool {
         match self {
-            Self::Mesh(mesh) => mesh.is_crossed(ray, t_max, left, counts),
-            Self::Instance(instance) => instance.is_crossed(ray, t_max, left, counts),
+            Self::Mesh(mesh) => mesh.is_crossed(ray, t_max, from, accept),
+            Self::Instance(instance) => instance.is_crossed(ray, t_max, from, accept),
             _ => false,
         }
     }
@@ -265,7 +265,7 @@ impl Shape {
             Self::Triangle(triangle) => return Polygon::Triangle(triangle.clone()).sample(from, u),
             Self::Quad(quad) => return Polygon::Parallelogram(&quad.plane).sample(from, u),
             Self::Ellipsoid(ellipsoid) => {
-                return ShapeSample::along(ellipsoid.point_at(ball_surface(u)).position - from);
+                return ShapeSample::along(ellipsoid.point_at(sample_sphere(u)).position - from);
             }
             Self::Disc(disc) => {
                 let sample = ShapeSample::along(disc.sample_area(u) - from)?;
@@ -345,18 +345,18 @@ impl Shape {
     pub fn sample_emission(&self, toward: &Ball, u: [f64; 2]) -> Option<SurfacePoint> {
         Some(match self {
             Self::Plane(_) | Self::Instance(_) => return None,
-            Self::Triangle(triangle) => triangle.point(triangle_coordinates(u)),
+            Self::Triangle(triangle) => triangle.point(sample_triangle(u)),
             Self::Sphere(sphere) => sphere.sample_emission(toward, u),
-            Self::Ellipsoid(ellipsoid) => ellipsoid.point_at(ball_surface(u)),
-            Self::Disc(disc) => disc.plane.point(disk(u).into()),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.point_at(sample_sphere(u)),
+            Self::Disc(disc) => disc.plane.point(sample_disk(u).into()),
             Self::Quad(quad) => quad.plane.point(u.map(|x| 2.0 * x - 1.0)),
             Self::Cube(cube) => {
-                let (face, along) = cube.choose(u[0]);
+                let (face, along) = cube.choose_part(u[0]);
                 cube.face(face).point([2.0 * along - 1.0, 2.0 * u[1] - 1.0])
             }
             Self::Mesh(mesh) => {
-                let (triangle, along) = mesh.choose(u[0]);
-                mesh.triangle(triangle).point(triangle_coordinates([along, u[1]]))
+                let (triangle, along) = mesh.choose_part(u[0]);
+                mesh.triangle(triangle).point(sample_triangle([along, u[1]]))
             }
         })
     }
@@ -370,7 +370,7 @@ impl Shape {
     pub fn pdf_emission(&self, toward: &Ball, point: &SurfacePoint) -> f64 {
         match self {
             Self::Sphere(sphere) => sphere.pdf_emission(toward, point),
-            Self::Ellipsoid(ellipsoid) => ellipsoid.density_over(ellipsoid.unit_of(point.position)),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.area_density(ellipsoid.to_unit_sphere(point.position)),
             _ => 1.0 / self.area(),
         }
     }

@@ -1,7 +1,7 @@
 use std::sync::OnceLock;
 
 use super::edges::open_edges;
-use super::packed::Packed;
+use super::packed::PackedTriangles;
 use super::triangle::{Facet, tangents_over};
 use super::turned::turned;
 use super::{Attributes, Intersection, Polygon, SurfacePoint, Triangle, Vertices};
@@ -19,7 +19,7 @@ use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 pub struct Mesh {
     vertices: Vertices,
     triangles: Vec<[u32; 3]>,
-    packed: Packed,
+    packed: PackedTriangles,
     /// Precomputed triangles of a small mesh. More rays arrive at such a mesh than it has triangles.
     facets: Vec<Facet>,
     bounds: Bounds,
@@ -31,7 +31,7 @@ pub struct Mesh {
 }
 
 /// Number of triangles up to which the memory of a mesh does not matter.
-pub(super) const SMALL: u32 = 1024;
+pub(super) const SMALL_MESH: u32 = 1024;
 
 impl Mesh {
     /// Creates the mesh of triangles whose corners index existing, finite vertices. Triangles without area are dropped.
@@ -47,13 +47,14 @@ impl Mesh {
             open if open > 0 && !flat.is_empty() => open.min(open_edges(&vertices, &[&*triangles, &flat].concat())),
             open => open,
         };
-        Some(Self::built(vertices, triangles, flat.len(), open_edges))
+        Some(Self::build(vertices, triangles, flat.len(), open_edges))
     }
 
-    fn built(vertices: Vertices, triangles: Vec<[u32; 3]>, degenerate: usize, open_edges: usize) -> Self {
-        let packed = Packed::new(&vertices, &triangles);
+    fn build(vertices: Vertices, triangles: Vec<[u32; 3]>, degenerate: usize, open_edges: usize) -> Self {
+        let packed = PackedTriangles::new(&vertices, &triangles);
         let facet = |corners: &[u32; 3]| Facet::new(Triangle::new(corners.map(|corner| vertices.at(corner))));
-        let facets = if triangles.len() <= SMALL as usize { triangles.iter().map(facet).collect() } else { vec![] };
+        let facets =
+            if triangles.len() <= SMALL_MESH as usize { triangles.iter().map(facet).collect() } else { vec![] };
         let bounds = Bounds::around(triangles.iter().flatten().map(|&corner| vertices.at(corner)));
         let (areas, attributes) = (OnceLock::new(), Attributes::default());
         Self { packed, facets, vertices, triangles, bounds, areas, attributes, degenerate, open_edges }
@@ -98,22 +99,22 @@ impl Mesh {
         self.triangles[index as usize].map(|corner| self.vertices.at(corner))
     }
 
-    /// Returns the nearest crossing of a ray that may leave the triangle `left`. Of equally near crossings, it is that
+    /// Returns the nearest crossing of a ray that may leave the triangle `from`. Of equally near crossings, it is that
     /// of the triangle listed first.
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Intersection> {
-        self.packed.nearest(ray, t_max, |part| left == Some(part), |_| true)
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64, from: Option<u32>) -> Option<Intersection> {
+        self.packed.nearest(ray, t_max, |part| from == Some(part), |_| true)
     }
 
-    /// Returns whether a ray that may leave the triangle `left` has a crossing with 0 < t <= `t_max` for which `counts`
+    /// Returns whether a ray that may leave the triangle `from` has a crossing with 0 < t <= `t_max` for which `accept`
     /// is true, given its triangle and t.
     pub(super) fn is_crossed(
         &self,
         ray: &Ray,
         t_max: f64,
-        left: Option<u32>,
-        counts: impl Fn(u32, f64) -> bool,
+        from: Option<u32>,
+        accept: impl Fn(u32, f64) -> bool,
     ) -> bool {
-        self.packed.any(ray, t_max, |part| left == Some(part), counts)
+        self.packed.any(ray, t_max, |part| from == Some(part), accept)
     }
 
     #[inline]
@@ -189,9 +190,9 @@ impl Mesh {
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {
         let points = self.vertices().map(|vertex| map.point(vertex)).collect();
-        let triangles = self.triangles.iter().map(|&corners| map.wound(corners)).collect();
+        let triangles = self.triangles.iter().map(|&corners| map.fix_winding(corners)).collect();
         let attributes = self.attributes.transformed(map);
-        Self::built(Vertices::Double(points), triangles, self.degenerate, self.open_edges).with(attributes)
+        Self::build(Vertices::Double(points), triangles, self.degenerate, self.open_edges).with(attributes)
     }
 
     fn areas(&self) -> &Distribution {
@@ -205,12 +206,12 @@ impl Mesh {
 
     /// Samples a point uniformly by area. Returns it with the triangle it lies on.
     pub(super) fn sample_area(&self, u: [f64; 2]) -> (DVec3, u32) {
-        let (index, along) = self.choose(u[0]);
+        let (index, along) = self.choose_part(u[0]);
         (self.triangle(index).sample_area([along, u[1]]), index)
     }
 
     /// Draws a triangle in proportion to its area. Returns it with the rest of the random number.
-    pub(super) fn choose(&self, u: f64) -> (u32, f64) {
+    pub(super) fn choose_part(&self, u: f64) -> (u32, f64) {
         let drawn = self.areas().sample(u);
         (drawn.index as u32, drawn.u)
     }

@@ -12,11 +12,11 @@ use super::mesh_data::{MeshFile, check_finite, no_such_vertex};
 /// # Errors
 /// A sentence that says what is wrong with the file.
 pub fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
-    if is_packed(path) {
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_lowercase();
+    if is_gzip(path) {
         return Err("it is compressed with gzip: unpack it first".into());
     }
-    let file = match ending.as_str() {
+    let file = match extension.as_str() {
         "ply" => super::ply::read(path, smooth)?,
         "obj" => super::obj::read(path, smooth)?,
         "gltf" | "glb" => super::gltf::read(path, smooth)?,
@@ -34,7 +34,7 @@ pub fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
 }
 
 /// Returns whether a file begins like gzip (RFC 1952, section 2.3.1).
-fn is_packed(path: &Path) -> bool {
+fn is_gzip(path: &Path) -> bool {
     let mut start = [0; 2];
     File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == [0x1f, 0x8b]
 }

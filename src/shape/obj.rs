@@ -25,25 +25,29 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
         let words: SmallVec<[&str; 8]> = statement.split_whitespace().collect();
         let Some((keyword, words)) = words.split_first() else { continue };
         match *keyword {
-            "v" => lists.places.push(place(words).map_err(|what| format!("the vertex in line {line} {what}"))?),
+            "v" => {
+                lists.positions.push(position(words).map_err(|problem| format!("the vertex in line {line} {problem}"))?)
+            }
             "vt" => {
                 let coordinates = coordinates(words);
-                let refused = |what| format!("the texture coordinate in line {line} {what}");
-                lists.coordinates.push(coordinates.map_err(refused)?);
+                let error_text = |problem| format!("the texture coordinate in line {line} {problem}");
+                lists.coordinates.push(coordinates.map_err(error_text)?);
             }
             "vn" => {
                 // Some programs write normals that are not numbers for faces without area.
                 let normal = if smooth { numbers(words) } else { Ok([0.0; 3]) };
-                let normal = normal.map_err(|what| format!("the normal in line {line} {what}"))?;
+                let normal = normal.map_err(|problem| format!("the normal in line {line} {problem}"))?;
                 lists.normals.push(normal.map(|x| x as f32));
             }
-            "f" | "fo" => lists.face(line, words, smooth).map_err(|what| format!("the face in line {line} {what}"))?,
+            "f" | "fo" => {
+                lists.add_face(line, words, smooth).map_err(|problem| format!("the face in line {line} {problem}"))?
+            }
             "mtllib" => lists.has_library = true,
             "usemtl" => drop(lists.materials.insert(words.join(" "))),
             _ => {}
         }
     }
-    lists.file()
+    lists.into_file()
 }
 
 /// Returns the statements of a text, one per line and without comments, each with its line number. A backslash at the
@@ -74,40 +78,40 @@ fn number(word: &str) -> Result<f64, &'static str> {
 fn numbers<const K: usize>(words: &[&str]) -> Result<[f64; K], &'static str> {
     let words = words.first_chunk::<K>().ok_or("has too few numbers")?;
     let mut numbers = [0.0; K];
-    for (into, word) in numbers.iter_mut().zip(words) {
-        *into = number(word)?;
+    for (slot, word) in numbers.iter_mut().zip(words) {
+        *slot = number(word)?;
     }
     Ok(numbers)
 }
 
 /// Reads a position. A fourth number is a weight. With a color there are six numbers or more, and the color is ignored.
-fn place(words: &[&str]) -> Result<[f64; 3], &'static str> {
-    let place = numbers::<3>(words)?;
-    let [_, _, _, weight] = words else { return Ok(place) };
+fn position(words: &[&str]) -> Result<[f64; 3], &'static str> {
+    let position = numbers::<3>(words)?;
+    let [_, _, _, weight] = words else { return Ok(position) };
     let weight = number(weight)?;
-    let place = place.map(|x| x / weight);
-    if place.iter().all(|&x| (x as f32).is_finite()) { Ok(place) } else { Err("is not finite") }
+    let position = position.map(|x| x / weight);
+    if position.iter().all(|&x| (x as f32).is_finite()) { Ok(position) } else { Err("is not finite") }
 }
 
 /// Reads texture coordinates. One number is enough for a one-dimensional texture. A third number is a depth and is
 /// ignored.
 fn coordinates(words: &[&str]) -> Result<[f32; 2], &'static str> {
-    let of_both = if let [u] = words { [number(u)?, 0.0] } else { numbers(words)? };
-    Ok(of_both.map(|x| x as f32))
+    let pair = if let [u] = words { [number(u)?, 0.0] } else { numbers(words)? };
+    Ok(pair.map(|x| x as f32))
 }
 
 /// Largest ratio of the positions' distance from the origin to their extent at which they are kept in 32 bits.
 /// Roundings are then at most a millionth of the extent, 2^-24 times this ratio.
-const FARTHEST: f64 = 16.0;
+const MAX_DISTANCE_RATIO: f64 = 16.0;
 
 /// Returns the positions of vertices, in 64 bits where 32 would round them by too much.
-fn vertices(places: impl Iterator<Item = [f64; 3]> + Clone) -> Vertices {
-    let bounds = Bounds::around(places.clone().map(DVec3::from));
+fn vertices(positions: impl Iterator<Item = [f64; 3]> + Clone) -> Vertices {
+    let bounds = Bounds::around(positions.clone().map(DVec3::from));
     let widest = bounds.size().max_element();
-    if bounds.min.abs().max(bounds.max.abs()).max_element() <= FARTHEST * widest {
-        Vertices::Single(places.map(|place| place.map(|x| x as f32)).collect())
+    if bounds.min.abs().max(bounds.max.abs()).max_element() <= MAX_DISTANCE_RATIO * widest {
+        Vertices::Single(positions.map(|position| position.map(|x| x as f32)).collect())
     } else {
-        Vertices::Double(places.map(DVec3::from).collect())
+        Vertices::Double(positions.map(DVec3::from).collect())
     }
 }
 
@@ -115,18 +119,18 @@ fn vertices(places: impl Iterator<Item = [f64; 3]> + Clone) -> Vertices {
 type Corner = [u32; 3];
 
 /// Stands for texture coordinates or a normal that a corner does not have.
-const NONE: u32 = u32::MAX;
+const NO_INDEX: u32 = u32::MAX;
 
-const NAMES: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+const LIST_NAMES: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
-fn no_such(kind: usize) -> String {
-    format!("refers to a {} that the file does not have", NAMES[kind])
+fn missing_entry(kind: usize) -> String {
+    format!("refers to a {} that the file does not have", LIST_NAMES[kind])
 }
 
 /// What has been read from a file so far.
 #[derive(Default)]
 struct ObjData {
-    places: Vec<[f64; 3]>,
+    positions: Vec<[f64; 3]>,
     coordinates: Vec<[f32; 2]>,
     normals: Vec<[f32; 3]>,
     corners: Numbered<Corner>,
@@ -141,14 +145,14 @@ struct ObjData {
 }
 
 impl ObjData {
-    fn face(&mut self, line: usize, words: &[&str], smooth: bool) -> Result<(), String> {
+    fn add_face(&mut self, line: usize, words: &[&str], smooth: bool) -> Result<(), String> {
         let (mut face, mut is_bare) = (Vec::with_capacity(words.len()), false);
         for word in words {
             let mut corner = self.corner(line, word)?;
             if !smooth {
-                corner[2] = NONE;
+                corner[2] = NO_INDEX;
             }
-            is_bare |= corner[1] == NONE;
+            is_bare |= corner[1] == NO_INDEX;
             face.push(self.corners.number(corner));
         }
         self.bare += if is_bare { face.len().saturating_sub(2) } else { 0 };
@@ -159,45 +163,45 @@ impl ObjData {
     /// Reads a corner such as 3, 3/2, 3//1 or 3/2/1. Numbers count from 1, or, if negative, back from the last entry so
     /// far.
     fn corner(&mut self, line: usize, word: &str) -> Result<Corner, String> {
-        let counts = [self.places.len(), self.coordinates.len(), self.normals.len()];
-        let mut corner = [NONE; 3];
+        let counts = [self.positions.len(), self.coordinates.len(), self.normals.len()];
+        let mut corner = [NO_INDEX; 3];
         for (kind, number) in word.split('/').enumerate() {
             if kind > 0 && number.is_empty() {
                 continue;
             }
             let number: i64 = number.parse().map_err(|_| "is not made of whole numbers")?;
-            let Some(into) = corner.get_mut(kind) else { return Err("is not made of whole numbers".into()) };
+            let Some(slot) = corner.get_mut(kind) else { return Err("is not made of whole numbers".into()) };
             let index = if number < 0 { (counts[kind] as i64).checked_add(number) } else { number.checked_sub(1) };
-            let index = index.and_then(|index| u32::try_from(index).ok()).filter(|&index| index != NONE);
-            *into = index.ok_or_else(|| no_such(kind))?;
-            if *into >= self.highest[kind].0 {
-                self.highest[kind] = (*into, line);
+            let index = index.and_then(|index| u32::try_from(index).ok()).filter(|&index| index != NO_INDEX);
+            *slot = index.ok_or_else(|| missing_entry(kind))?;
+            if *slot >= self.highest[kind].0 {
+                self.highest[kind] = (*slot, line);
             }
         }
         Ok(corner)
     }
 
-    fn file(self) -> Result<MeshFile, String> {
-        let counts = [self.places.len(), self.coordinates.len(), self.normals.len()];
+    fn into_file(self) -> Result<MeshFile, String> {
+        let counts = [self.positions.len(), self.coordinates.len(), self.normals.len()];
         for (kind, (highest, line)) in self.highest.into_iter().enumerate() {
             // Some programs leave out a list, but not the indices into it.
             let is_left_out = kind > 0 && counts[kind] == 0;
             if line > 0 && !is_left_out && highest as usize >= counts[kind] {
-                return Err(format!("the face in line {line} {}", no_such(kind)));
+                return Err(format!("the face in line {line} {}", missing_entry(kind)));
             }
         }
         let (mut attributes, corners) = (Attributes::default(), self.corners.all());
-        let has = |kind: usize| counts[kind] > 0 && corners.iter().any(|corner| corner[kind] != NONE);
+        let has = |kind: usize| counts[kind] > 0 && corners.iter().any(|corner| corner[kind] != NO_INDEX);
         if has(1) {
-            let of = |corner: &Corner| self.coordinates.get(corner[1] as usize).copied().unwrap_or_default();
+            let lookup = |corner: &Corner| self.coordinates.get(corner[1] as usize).copied().unwrap_or_default();
             attributes.bare = self.bare;
-            attributes.coordinates = corners.iter().map(of).collect();
+            attributes.coordinates = corners.iter().map(lookup).collect();
         }
         if has(2) {
-            let of = |corner: &Corner| self.normals.get(corner[2] as usize).copied().unwrap_or_default();
-            attributes.normals = corners.iter().map(of).collect();
+            let lookup = |corner: &Corner| self.normals.get(corner[2] as usize).copied().unwrap_or_default();
+            attributes.normals = corners.iter().map(lookup).collect();
         }
-        let vertices = vertices(corners.iter().map(|corner| self.places[corner[0] as usize]));
+        let vertices = vertices(corners.iter().map(|corner| self.positions[corner[0] as usize]));
         let (faces, materials) = (self.faces.triangles(&vertices)?, self.materials.len().max(self.has_library.into()));
         Ok(MeshFile { vertices, faces, attributes, materials, ..MeshFile::default() })
     }

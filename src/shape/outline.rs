@@ -7,7 +7,7 @@ use crate::math::{DVec3, unit};
 /// the arc from the corner to that point.
 pub(super) struct Outline {
     corners: [DVec3; 4],
-    parts: [Part; 2],
+    parts: [SphericalTriangle; 2],
     /// Solid angle in steradians.
     pub(super) solid_angle: f64,
 }
@@ -18,7 +18,7 @@ pub(super) struct Outline {
 /// the volume is a . (b x c) and the other term is 1 + a . b + b . c + c . a. `along` is 1 + a . b, and `across` is the
 /// rest.
 #[derive(Clone, Copy, Default)]
-struct Part {
+struct SphericalTriangle {
     volume: f64,
     across: f64,
     along: f64,
@@ -28,41 +28,41 @@ struct Part {
 /// pi long, less than a millionth of the samples lies outside. It is also the smallest absolute value of a complex
 /// number whose argument is taken. The terms of that number are accurate to a few 2^-52, and both vanish only if the
 /// point lies on the fan's diagonal.
-const LEAST: f64 = 1.0 / (1u64 << 28) as f64;
+const MIN_SOLID_ANGLE: f64 = 1.0 / (1u64 << 28) as f64;
 
 /// Distance, in half diagonals, beyond which sampling by area does as well: benches/README.md.
 const NEAR: f64 = 4.0;
 
-/// Returns whether solid angles are worth their cost for a shape at the end of the vector `way`. `squared` is the
+/// Returns whether solid angles are worth their cost for a shape at the end of the vector `offset`. `radius2` is the
 /// square of the shape's half diagonal.
-pub(super) fn is_near(way: DVec3, squared: f64) -> bool {
-    way.length_squared() < NEAR * NEAR * squared
+pub(super) fn is_near(offset: DVec3, radius2: f64) -> bool {
+    offset.length_squared() < NEAR * NEAR * radius2
 }
 
 impl Outline {
-    /// Returns the outline of a flat polygon with three or four corners, in order. `spanned` is the cross product of
+    /// Returns the outline of a flat polygon with three or four corners, in order. `cross` is the cross product of
     /// its first two edges, twice the area of a triangle. Returns `None` if the outline is too narrow to be sampled.
-    pub(super) fn seen(from: DVec3, corners: &[DVec3], spanned: DVec3) -> Option<Self> {
-        let ways: [DVec3; 4] = std::array::from_fn(|i| corners[i.min(corners.len() - 1)] - from);
-        let lengths = ways.map(|way| way.length());
-        let units: [DVec3; 4] = std::array::from_fn(|i| ways[i] / lengths[i]);
-        let height = (0.5 * (ways[0] + ways[2])).dot(spanned).abs();
-        let mut parts = [Part::default(); 2];
+    pub(super) fn seen_from(from: DVec3, corners: &[DVec3], cross: DVec3) -> Option<Self> {
+        let offsets: [DVec3; 4] = std::array::from_fn(|i| corners[i.min(corners.len() - 1)] - from);
+        let lengths = offsets.map(|offset| offset.length());
+        let units: [DVec3; 4] = std::array::from_fn(|i| offsets[i] / lengths[i]);
+        let height = (0.5 * (offsets[0] + offsets[2])).dot(cross).abs();
+        let mut parts = [SphericalTriangle::default(); 2];
         let (mut real, mut imaginary) = (1.0, 0.0);
         for (i, part) in parts.iter_mut().enumerate().take(corners.len() - 2) {
             let [apex, a, b] = [0, i + 1, i + 2];
             let volume = height / (lengths[apex] * lengths[a] * lengths[b]);
             let across = units[a].dot(units[b]) + units[apex].dot(units[b]);
-            *part = Part { volume, across, along: 1.0 + units[apex].dot(units[a]) };
+            *part = SphericalTriangle { volume, across, along: 1.0 + units[apex].dot(units[a]) };
             // Half solid angles add up like the arguments of complex numbers.
             let sum = part.across + part.along;
-            if volume.max(sum.abs()) < LEAST {
+            if volume.max(sum.abs()) < MIN_SOLID_ANGLE {
                 return None;
             }
             (real, imaginary) = (real * sum - imaginary * volume, real * volume + imaginary * sum);
         }
         let solid_angle = 2.0 * libm::atan2(imaginary, real);
-        (solid_angle >= LEAST).then_some(Self { corners: units, parts, solid_angle })
+        (solid_angle >= MIN_SOLID_ANGLE).then_some(Self { corners: units, parts, solid_angle })
     }
 
     /// Samples a direction within the outline, with density 1 / `solid_angle`.
@@ -72,10 +72,10 @@ impl Outline {
         if self.parts[1].volume > 0.0 {
             // The rest beyond the first triangle, from the sine and cosine of the difference of the angles.
             let sum = part.across + part.along;
-            let left = sin * sum - cos * part.volume;
-            if left > 0.0 {
+            let rest = sin * sum - cos * part.volume;
+            if rest > 0.0 {
                 let length = (sum * sum + part.volume * part.volume).sqrt();
-                (sin, cos) = (left / length, (cos * sum + sin * part.volume) / length);
+                (sin, cos) = (rest / length, (cos * sum + sin * part.volume) / length);
                 (part, number) = (self.parts[1], 1);
             }
         }
@@ -102,7 +102,11 @@ mod tests {
 
     fn square(side: f64, center: DVec3) -> Option<Outline> {
         let (u, v) = (DVec3::X * 0.5 * side, DVec3::Y * 0.5 * side);
-        Outline::seen(DVec3::ZERO, &[center - u - v, center + u - v, center + u + v, center - u + v], 4.0 * u.cross(v))
+        Outline::seen_from(
+            DVec3::ZERO,
+            &[center - u - v, center + u - v, center + u + v, center - u + v],
+            4.0 * u.cross(v),
+        )
     }
 
     #[test]

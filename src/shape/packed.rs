@@ -1,13 +1,13 @@
 //! Triangles under a tree of boxes, in the order of its leaves, tested against a ray four at a time.
 
 use super::bvh::{Crossings, GROUP, Line, Number, prefetch};
-use super::triangle::Sheared;
+use super::triangle::ShearedRay;
 use super::{Bvh, Intersection, Vectors, Vertices, Visitor, fragments};
 use crate::math::{DVec3, Ray};
 
 /// A tree over triangles, with copies of all their corners.
 #[derive(Clone, Debug)]
-pub(super) struct Packed {
+pub(super) struct PackedTriangles {
     bvh: Bvh,
     blocks: Blocks,
 }
@@ -23,14 +23,14 @@ enum Blocks {
 #[derive(Clone, Debug)]
 struct Block<T>([[[T; GROUP]; 3]; 3]);
 
-impl Packed {
+impl PackedTriangles {
     /// Builds the tree over triangles whose corners index the vertices.
     pub fn new(vertices: &Vertices, triangles: &[[u32; 3]]) -> Self {
         let corners = |index: u32| triangles[index as usize].map(|corner| vertices.at(corner));
-        Self::under(fragments::tree(triangles.len() as u32, corners), vertices, triangles)
+        Self::with_bvh(fragments::build_tree(triangles.len() as u32, corners), vertices, triangles)
     }
 
-    fn under(bvh: Bvh, vertices: &Vertices, triangles: &[[u32; 3]]) -> Self {
+    fn with_bvh(bvh: Bvh, vertices: &Vertices, triangles: &[[u32; 3]]) -> Self {
         let blocks = match vertices {
             Vertices::Single(points) => Blocks::Single(blocks(points, triangles, bvh.items(), f32::NAN)),
             Vertices::Double(points) => Blocks::Double(blocks(points, triangles, bvh.items(), f64::NAN)),
@@ -38,22 +38,22 @@ impl Packed {
         Self { bvh, blocks }
     }
 
-    /// Returns the nearest crossing with 0 < t <= `t_max` of a triangle for which `counts` is true. Of equally near
+    /// Returns the nearest crossing with 0 < t <= `t_max` of a triangle for which `accept` is true. Of equally near
     /// crossings, it is that of the triangle listed first.
     ///
-    /// `leaves` tells which triangle the ray leaves. The ray was offset by that triangle's error bound, so that its
+    /// `starts_on` tells which triangle the ray leaves. The ray was offset by that triangle's error bound, so that its
     /// origin lies on the side to which it leaves, and the outcome of an exact test is known.
     #[inline]
     pub fn nearest(
         &self,
         ray: &Ray,
         t_max: f64,
-        leaves: impl Fn(u32) -> bool,
-        counts: impl Fn(u32) -> bool,
+        starts_on: impl Fn(u32) -> bool,
+        accept: impl Fn(u32) -> bool,
     ) -> Option<Intersection> {
         let mut nearest: Option<Intersection> = None;
-        self.search::<true>(ray, t_max, leaves, |found, t_max| {
-            if !counts(found.part) {
+        self.search::<true>(ray, t_max, starts_on, |found, t_max| {
+            if !accept(found.part) {
                 return Some(t_max);
             }
             if nearest.is_none_or(|nearest| found.t < nearest.t || found.part < nearest.part) {
@@ -64,12 +64,18 @@ impl Packed {
         nearest
     }
 
-    /// Returns whether there is a crossing with 0 < t <= `t_max` for which `counts` is true, given its triangle and t.
+    /// Returns whether there is a crossing with 0 < t <= `t_max` for which `accept` is true, given its triangle and t.
     #[inline]
-    pub fn any(&self, ray: &Ray, t_max: f64, leaves: impl Fn(u32) -> bool, counts: impl Fn(u32, f64) -> bool) -> bool {
+    pub fn any(
+        &self,
+        ray: &Ray,
+        t_max: f64,
+        starts_on: impl Fn(u32) -> bool,
+        accept: impl Fn(u32, f64) -> bool,
+    ) -> bool {
         let mut is_found = false;
-        self.search::<false>(ray, t_max, leaves, |found, t_max| {
-            is_found = counts(found.part, found.t);
+        self.search::<false>(ray, t_max, starts_on, |found, t_max| {
+            is_found = accept(found.part, found.t);
             (!is_found).then_some(t_max)
         });
         is_found
@@ -82,17 +88,17 @@ impl Packed {
         &self,
         ray: &Ray,
         t_max: f64,
-        leaves: impl Fn(u32) -> bool,
+        starts_on: impl Fn(u32) -> bool,
         take: impl FnMut(Intersection, f64) -> Option<f64>,
     ) {
-        let (sheared, items) = (Sheared::new(ray), self.bvh.items());
+        let (sheared, items) = (ShearedRay::new(ray), self.bvh.items());
         let line = sheared.line();
         match &self.blocks {
             Blocks::Single(blocks) => {
-                self.bvh.walk::<ORDERED>(ray, t_max, &mut Search { blocks, items, line, sheared, leaves, take });
+                self.bvh.walk::<ORDERED>(ray, t_max, &mut Search { blocks, items, line, sheared, starts_on, take });
             }
             Blocks::Double(blocks) => {
-                self.bvh.walk::<ORDERED>(ray, t_max, &mut Search { blocks, items, line, sheared, leaves, take });
+                self.bvh.walk::<ORDERED>(ray, t_max, &mut Search { blocks, items, line, sheared, starts_on, take });
             }
         }
     }
@@ -123,8 +129,8 @@ struct Search<'a, T, L, F> {
     blocks: &'a [Block<T>],
     items: &'a [u32],
     line: Line,
-    sheared: Sheared,
-    leaves: L,
+    sheared: ShearedRay,
+    starts_on: L,
     take: F,
 }
 
@@ -134,14 +140,14 @@ impl<T: Number, L: Fn(u32) -> bool, F: FnMut(Intersection, f64) -> Option<f64>> 
         for group in first..first + groups {
             let (block, items) = (&self.blocks[group], &self.items[group * GROUP..][..GROUP]);
             let Some(mut crossings) = block.meet(vectors, &self.line, &self.sheared, t_max) else { continue };
-            while let Some(lane) = next(&mut crossings.met) {
+            while let Some(lane) = pop_lane(&mut crossings.hits) {
                 if crossings.t[lane] <= t_max {
                     t_max = (self.take)(Intersection { part: items[lane], ..crossing_of(&crossings, lane) }, t_max)?;
                 }
             }
-            while let Some(lane) = next(&mut crossings.unsure) {
-                if !(self.leaves)(items[lane])
-                    && let Some(crossing) = block.exactly(lane, &self.sheared, t_max)
+            while let Some(lane) = pop_lane(&mut crossings.unsure) {
+                if !(self.starts_on)(items[lane])
+                    && let Some(crossing) = block.intersect_exactly(lane, &self.sheared, t_max)
                 {
                     t_max = (self.take)(Intersection { part: items[lane], ..crossing }, t_max)?;
                 }
@@ -158,7 +164,7 @@ impl<T: Number, L: Fn(u32) -> bool, F: FnMut(Intersection, f64) -> Option<f64>> 
 
 /// Removes the lowest of some lanes and returns it.
 #[inline(always)]
-fn next(lanes: &mut u32) -> Option<usize> {
+fn pop_lane(lanes: &mut u32) -> Option<usize> {
     let lane = lanes.trailing_zeros() as usize;
     let is_there = *lanes != 0;
     *lanes &= lanes.wrapping_sub(1);
@@ -175,11 +181,11 @@ fn crossing_of(intersections: &Crossings, lane: usize) -> Intersection {
 impl<T: Number> Block<T> {
     /// Returns the triangles that a ray meets with 0 < t <= `t_max`, edges and corners included.
     ///
-    /// The edge functions are rounded as in `Sheared::intersect`. One that is not 0 has the right sign, because
+    /// The edge functions are rounded as in `ShearedRay::intersect`. One that is not 0 has the right sign, because
     /// rounding keeps the order of products. So a triangle with edge functions of opposite signs is rejected there as
     /// well, and no other is rejected here. Cases for which that test needs more digits are left to it.
     #[inline(always)]
-    fn meet(&self, vectors: impl Vectors, line: &Line, sheared: &Sheared, t_max: f64) -> Option<Crossings> {
+    fn meet(&self, vectors: impl Vectors, line: &Line, sheared: &ShearedRay, t_max: f64) -> Option<Crossings> {
         let [x, y, z] = sheared.order;
         let corners = self.0.each_ref().map(|corner| [&corner[x], &corner[y], &corner[z]]);
         vectors.meet(corners, line, t_max)
@@ -187,7 +193,7 @@ impl<T: Number> Block<T> {
 
     /// Computes the crossing with one of the triangles with 0 < t <= `t_max`, with more digits where needed.
     #[inline(never)]
-    fn exactly(&self, lane: usize, sheared: &Sheared, t_max: f64) -> Option<Intersection> {
+    fn intersect_exactly(&self, lane: usize, sheared: &ShearedRay, t_max: f64) -> Option<Intersection> {
         let corner = |corner: &[[T; GROUP]; 3]| DVec3::from(corner.map(|x| x[lane].into()));
         sheared.intersect([corner(&self.0[0]), corner(&self.0[1]), corner(&self.0[2])], t_max)
     }
@@ -196,7 +202,7 @@ impl<T: Number> Block<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::ball_surface;
+    use crate::math::sample_sphere;
     use crate::shape::Triangle;
 
     /// Returns a linear congruential generator of numbers in [0, 1).
@@ -209,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn plain_and_wide_instructions_answer_the_same_bits() {
+    fn plain_and_wide_instructions_give_the_same_bits() {
         let mut number = numbers();
         // On a lattice, so that many rays meet edges, corners and several triangles at once.
         let mut coordinate = || ((number() * 16.0) as i32 - 8) as f32 * 0.25;
@@ -220,14 +226,14 @@ mod tests {
         let double = points.iter().map(|p| DVec3::from(p.map(f64::from))).collect();
         for vertices in [Vertices::Single(points.clone()), Vertices::Double(double)] {
             let bounds = faces.iter().map(|face| Triangle::new(face.map(corner)).bounds());
-            let wide = Packed::under(Bvh::new::<GROUP>(bounds), &vertices, &faces);
-            let plain = Packed { bvh: wide.bvh.clone().plain(), blocks: wide.blocks.clone() };
-            let mut met = 0;
+            let wide = PackedTriangles::with_bvh(Bvh::new::<GROUP>(bounds), &vertices, &faces);
+            let plain = PackedTriangles { bvh: wide.bvh.clone().plain(), blocks: wide.blocks.clone() };
+            let mut hits = 0;
             for i in 0..60_000 {
                 let mut place = || ((number() * 16.0) as i32 - 8) as f64 * 0.25;
                 let mut origin = DVec3::new(place(), place(), place());
                 let direction = match i % 4 {
-                    0 => ball_surface([number(), number()]),
+                    0 => sample_sphere([number(), number()]),
                     // Along an axis, with a 0 of either sign in the other components.
                     1 => DVec3::from([[0.0, -0.0, 1.0], [-1.0, 0.0, -0.0], [-0.0, 1.0, 0.0]][i / 4 % 3]),
                     2 => (DVec3::new(place(), place(), place()) - origin).normalize_or(DVec3::X),
@@ -235,7 +241,7 @@ mod tests {
                     _ => DVec3::new(1e-42 * (number() - 0.5), 1.0, 1e-300),
                 };
                 if i % 3 == 0 {
-                    origin += ball_surface([number(), number()]);
+                    origin += sample_sphere([number(), number()]);
                 }
                 let ray = Ray { origin, direction };
                 let t_max = if i % 5 == 0 { number() } else { f64::INFINITY };
@@ -252,9 +258,9 @@ mod tests {
                     let nearest = each.min_by(|a, b| a.t.total_cmp(&b.t).then(a.part.cmp(&b.part)));
                     assert_eq!(found, nearest, "{ray:?}");
                 }
-                met += usize::from(found.is_some());
+                hits += usize::from(found.is_some());
             }
-            assert!(met > 30_000, "only {met} rays meet anything");
+            assert!(hits > 30_000, "only {hits} rays meet anything");
         }
     }
 }

@@ -23,19 +23,19 @@ impl Plane {
         self.normal
     }
 
-    /// Returns whether another plane lies in the same place, to within `near` times the distance from the world's
+    /// Returns whether another plane lies in the same place, to within `tolerance` times the distance from the world's
     /// origin.
-    pub fn coincides(&self, other: &Self, near: f64) -> bool {
+    pub fn coincides(&self, other: &Self, tolerance: f64) -> bool {
         let far = self.point.length().max(other.point.length());
         let is_parallel = self.normal.cross(other.normal).length() < 1e-6;
-        is_parallel && (other.point - self.point).dot(self.normal).abs() <= near * far
+        is_parallel && (other.point - self.point).dot(self.normal).abs() <= tolerance * far
     }
 
-    /// Returns whether the plane cuts a box, or passes it within `near` times the box's diagonal.
-    pub fn meets(&self, bounds: &Bounds, near: f64) -> bool {
+    /// Returns whether the plane cuts a box, or passes it within `tolerance` times the box's diagonal.
+    pub fn meets(&self, bounds: &Bounds, tolerance: f64) -> bool {
         let size = bounds.size();
         let half = 0.5 * size.dot(self.normal.abs());
-        (bounds.center() - self.point).dot(self.normal).abs() <= half + near * size.length()
+        (bounds.center() - self.point).dot(self.normal).abs() <= half + tolerance * size.length()
     }
 
     /// Returns whether a point lies behind the plane, on the side from which the normal points away.

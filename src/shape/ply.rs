@@ -15,11 +15,12 @@ struct Vertex {
     place: [f64; 3],
     normal: [f32; 3],
     /// Texture coordinates, for each pair of names.
-    coordinates: [[f32; 2]; COORDINATES.len()],
+    coordinates: [[f32; 2]; COORDINATE_NAMES.len()],
 }
 
 /// Names in use for a vertex's texture coordinates.
-const COORDINATES: [[&str; 2]; 4] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
+const COORDINATE_NAMES: [[&str; 2]; 4] =
+    [["u", "v"], ["s", "t"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
 
 impl PropertyAccess for Vertex {
     fn new() -> Self {
@@ -47,7 +48,7 @@ impl PropertyAccess for Vertex {
             "nz" => self.normal[2] = value as f32,
             _ => {
                 let mut places = self.coordinates.iter_mut().flatten();
-                match COORDINATES.as_flattened().iter().position(|known| *known == name) {
+                match COORDINATE_NAMES.as_flattened().iter().position(|known| *known == name) {
                     Some(at) => places.nth(at).into_iter().for_each(|place| *place = value as f32),
                     None => return PropertyAccessResult::Ignored,
                 }
@@ -65,7 +66,7 @@ struct Face {
 }
 
 /// Name of the list of a face's texture coordinates.
-const OF_CORNERS: &str = "texcoord";
+const CORNER_COORDINATES: &str = "texcoord";
 
 impl PropertyAccess for Face {
     fn new() -> Self {
@@ -75,8 +76,10 @@ impl PropertyAccess for Face {
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
         let index = |i: i64| u32::try_from(i).unwrap_or(NO_VERTEX);
         match (name, property) {
-            (OF_CORNERS, Property::ListFloat(list)) => self.coordinates = list,
-            (OF_CORNERS, Property::ListDouble(list)) => self.coordinates = list.into_iter().map(|x| x as f32).collect(),
+            (CORNER_COORDINATES, Property::ListFloat(list)) => self.coordinates = list,
+            (CORNER_COORDINATES, Property::ListDouble(list)) => {
+                self.coordinates = list.into_iter().map(|x| x as f32).collect()
+            }
             ("vertex_indices" | "vertex_index", list) => {
                 self.corners = match list {
                     Property::ListChar(list) => list.into_iter().map(|i| index(i.into())).collect(),
@@ -110,7 +113,7 @@ impl Face {
 }
 
 /// Checks that an element lists vertices. `name` is the plural noun for its entries.
-fn has_corners(element: &ElementDef, name: &str) -> Result<(), String> {
+fn check_corners(element: &ElementDef, name: &str) -> Result<(), String> {
     let list = ["vertex_indices", "vertex_index"].iter().find_map(|key| element.properties.get(*key));
     match list.map(|property| &property.data_type) {
         _ if element.count == 0 => Ok(()),
@@ -144,7 +147,7 @@ impl PlyData {
         }
         let has = |names: &[&str]| names.iter().all(|name| element.properties.contains_key(*name));
         let has_normals = smooth && has(&["nx", "ny", "nz"]);
-        let pair = COORDINATES.iter().position(|names| has(names));
+        let pair = COORDINATE_NAMES.iter().position(|names| has(names));
         body.elements(element, |vertex: Vertex| {
             match &mut self.vertices {
                 Vertices::Single(points) => points.push(vertex.place.map(|x| x as f32)),
@@ -165,7 +168,7 @@ impl PlyData {
     }
 
     /// Makes a vertex of each distinct corner. What corners lack is taken from their vertices.
-    fn part_corners(&mut self) -> Result<(), String> {
+    fn split_corners(&mut self) -> Result<(), String> {
         let Some(corners) = self.corners.take().map(Numbered::all) else { return Ok(()) };
         // Checked while vertices still have the numbers of the file.
         check_finite(&self.vertices, &self.attributes)?;
@@ -204,8 +207,8 @@ impl PlyData {
 pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let mut body = Body::open(path)?;
     let elements: Vec<ElementDef> = body.header.elements.values().cloned().collect();
-    let of_corners = body.header.elements.get("face").and_then(|faces| faces.properties.get(OF_CORNERS));
-    let mut lists = PlyData { corners: of_corners.map(|_| Numbered::default()), ..PlyData::default() };
+    let corner_property = body.header.elements.get("face").and_then(|faces| faces.properties.get(CORNER_COORDINATES));
+    let mut lists = PlyData { corners: corner_property.map(|_| Numbered::default()), ..PlyData::default() };
     for element in &elements {
         match element.name.as_str() {
             "vertex" => lists.vertices(&mut body, element, smooth)?,
@@ -213,18 +216,18 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
             // there are.
             _ if element.properties.is_empty() && !body.has_lines() => {}
             "face" => {
-                has_corners(element, "faces")?;
+                check_corners(element, "faces")?;
                 body.elements(element, |face: Face| lists.push(&face.corners, &face.coordinates))?;
             }
             "tristrips" => {
-                has_corners(element, "tristrips")?;
+                check_corners(element, "tristrips")?;
                 let keep = |strips: Face| strips.triangles(|corners| lists.push(&corners, &[]));
                 body.elements(element, keep)?;
             }
             _ => body.elements(element, |_: Vertex| ())?,
         }
     }
-    lists.part_corners()?;
+    lists.split_corners()?;
     let PlyData { vertices, attributes, faces, .. } = lists;
     let faces = faces.triangles(&vertices)?;
     Ok(MeshFile { vertices, faces, attributes, ..MeshFile::default() })
@@ -235,7 +238,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_that_ends_in_a_later_batch_says_how_many_elements_it_has_of_all() {
+    fn a_file_that_ends_in_a_later_batch_says_how_many_elements_it_has_in_total() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("cut.ply");
         let header =

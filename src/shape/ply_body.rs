@@ -14,7 +14,7 @@ pub(super) struct Body {
     pub(super) header: Header,
     rest: Reader<BufReader<File>>,
     /// The byte that ends each line.
-    end: u8,
+    line_end: u8,
     /// Number of lines that have been read.
     lines: usize,
 }
@@ -31,18 +31,18 @@ impl Body {
         if !first.starts_with(b"ply") {
             return Err("a PLY file begins with a line `ply`, but this one does not".into());
         }
-        let end = end_of_lines(first);
+        let line_end = find_line_end(first);
         let (mut bytes, mut lines, mut is_whole) = (Vec::new(), 0, false);
         while !is_whole {
             let start = bytes.len();
-            file.read_until(end, &mut bytes).map_err(|error| error.to_string())?;
+            file.read_until(line_end, &mut bytes).map_err(|error| error.to_string())?;
             is_whole = bytes.len() == start || bytes[start..].trim_ascii() == b"end_header";
             lines += 1;
         }
-        let text = String::from_utf8_lossy(&bytes).replace(char::from(end), "\n");
+        let text = String::from_utf8_lossy(&bytes).replace(char::from(line_end), "\n");
         let header = Parser::<DefaultElement>::new().read_header(&mut Reader::new(text.as_bytes()));
         let header = header.map_err(|error| ply_error(error, true))?;
-        Ok(Self { header, rest: Reader::new(file), end, lines })
+        Ok(Self { header, rest: Reader::new(file), line_end, lines })
     }
 
     pub(super) fn has_lines(&self) -> bool {
@@ -56,27 +56,32 @@ impl Body {
         mut keep: impl FnMut(E),
     ) -> Result<(), String> {
         if self.has_lines() {
-            return self.in_lines(element, keep);
+            return self.read_text_elements(element, keep);
         }
         let (parser, mut batch) = (Parser::<E>::new(), element.clone());
         for done in (0..element.count).step_by(BATCH) {
             batch.count = BATCH.min(element.count - done);
             let read = parser.read_payload_for_element(&mut self.rest, &batch, &self.header);
-            let of_all = |error| count_from(&ply_error(error, false), batch.count, done, element.count);
-            read.map_err(of_all)?.into_iter().for_each(&mut keep);
+            let with_totals = |error| with_total_counts(&ply_error(error, false), batch.count, done, element.count);
+            read.map_err(with_totals)?.into_iter().for_each(&mut keep);
         }
         Ok(())
     }
 
     /// Reads elements from lines. The parser of the crate accepts neither `nan` nor numbers such as `1.` and `.5`.
-    fn in_lines<E: PropertyAccess>(&mut self, element: &ElementDef, mut keep: impl FnMut(E)) -> Result<(), String> {
+    fn read_text_elements<E: PropertyAccess>(
+        &mut self,
+        element: &ElementDef,
+        mut keep: impl FnMut(E),
+    ) -> Result<(), String> {
         let ElementDef { name, count, properties } = element;
         let mut line = Vec::new();
         for done in 0..*count {
             line.clear();
             while line.trim_ascii().is_empty() {
                 line.clear();
-                let read = self.rest.get_mut().read_until(self.end, &mut line).map_err(|error| error.to_string())?;
+                let read =
+                    self.rest.get_mut().read_until(self.line_end, &mut line).map_err(|error| error.to_string())?;
                 if read == 0 {
                     let message = format!("while reading element '{name}' (expected {count}, got {done})");
                     return Err(format!("the file ends too early, {message}"));
@@ -86,15 +91,15 @@ impl Body {
                     break;
                 }
             }
-            let read = of_line(&String::from_utf8_lossy(&line), element);
-            keep(read.ok_or_else(|| no_fit(self.lines))?);
+            let read = parse_element(&String::from_utf8_lossy(&line), element);
+            keep(read.ok_or_else(|| misfit_message(self.lines))?);
         }
         Ok(())
     }
 }
 
 /// Returns the byte that ends a line. In old Macintosh files it is a carriage return alone.
-fn end_of_lines(text: &[u8]) -> u8 {
+fn find_line_end(text: &[u8]) -> u8 {
     let first = text.iter().position(|byte| matches!(byte, b'\r' | b'\n')).unwrap_or(0);
     match text.get(first..) {
         Some([b'\r', next, ..]) if !matches!(next, b'\r' | b'\n') => b'\r',
@@ -112,7 +117,7 @@ macro_rules! property {
 }
 
 /// Reads the element in a line, or returns `None` if the line does not match the header.
-fn of_line<E: PropertyAccess>(line: &str, element: &ElementDef) -> Option<E> {
+fn parse_element<E: PropertyAccess>(line: &str, element: &ElementDef) -> Option<E> {
     let (mut words, mut read) = (line.split_ascii_whitespace(), E::new());
     for (name, property) in &element.properties {
         let value = match &property.data_type {
@@ -131,12 +136,12 @@ fn of_line<E: PropertyAccess>(line: &str, element: &ElementDef) -> Option<E> {
     Some(read)
 }
 
-fn no_fit(line: usize) -> String {
+fn misfit_message(line: usize) -> String {
     format!("line {line} does not fit a PLY file with this header")
 }
 
 /// Returns a message about the end of a file with the numbers of all elements instead of those of a batch.
-fn count_from(message: &str, batch: usize, done: usize, all: usize) -> String {
+fn with_total_counts(message: &str, batch: usize, done: usize, all: usize) -> String {
     let numbers = message.split_once(&format!("(expected {batch}, got "));
     let numbers = numbers.and_then(|(before, rest)| Some((before, rest.split_once(')')?)));
     match numbers {
@@ -155,7 +160,7 @@ fn ply_error(error: ParseError, has_lines: bool) -> String {
     let message = first.split_once(": ").map_or(first, |(_, message)| message);
     match (message.strip_prefix("Unexpected end of file"), error.line()) {
         (Some(place), _) => format!("the file ends too early,{place}"),
-        (None, Some(line)) if has_lines => no_fit(line),
+        (None, Some(line)) if has_lines => misfit_message(line),
         (None, Some(_)) => "its bytes do not fit a PLY file with this header".into(),
         (None, None) => message.to_owned(),
     }

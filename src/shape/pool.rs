@@ -1,12 +1,12 @@
-use super::mesh::SMALL;
-use super::packed::Packed;
+use super::mesh::SMALL_MESH;
+use super::packed::PackedTriangles;
 use super::{Intersection, Shape, Triangle, Vertices};
 use crate::math::{DVec3, Ray};
 
 /// The triangles of several small shapes in one tree, through which a ray goes only once.
 #[derive(Clone, Debug)]
 pub struct Pool {
-    packed: Packed,
+    packed: PackedTriangles,
     /// Index of the shape, and of the triangle in the shape.
     owners: Vec<[u32; 2]>,
 }
@@ -16,7 +16,7 @@ impl Pool {
     pub fn takes(shape: &Shape) -> bool {
         match shape {
             Shape::Triangle(_) => true,
-            Shape::Mesh(mesh) => mesh.count() <= SMALL,
+            Shape::Mesh(mesh) => mesh.count() <= SMALL_MESH,
             _ => false,
         }
     }
@@ -39,33 +39,33 @@ impl Pool {
             }
         }
         let triangles: Vec<[u32; 3]> = (0..owners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        Self { packed: Packed::new(&Vertices::Double(points), &triangles), owners }
+        Self { packed: PackedTriangles::new(&Vertices::Double(points), &triangles), owners }
     }
 
-    /// Returns the nearest crossing with 0 < t <= `t_max` of a shape for which `counts` is true, with the shape's
-    /// number. Of equally near crossings, it is that of the lowest number. `left` is the triangle that the ray leaves,
+    /// Returns the nearest crossing with 0 < t <= `t_max` of a shape for which `accept` is true, with the shape's
+    /// number. Of equally near crossings, it is that of the lowest number. `from` is the triangle that the ray leaves,
     /// as a shape and a part.
     #[inline]
     pub fn nearest(
         &self,
         ray: &Ray,
         t_max: f64,
-        left: Option<[u32; 2]>,
-        counts: impl Fn(u32) -> bool,
+        from: Option<[u32; 2]>,
+        accept: impl Fn(u32) -> bool,
     ) -> Option<(u32, Intersection)> {
         let owner = |item: u32| self.owners[item as usize];
-        let leaves = |item| left == Some(owner(item));
-        let intersection = self.packed.nearest(ray, t_max, leaves, |item| counts(owner(item)[0]))?;
+        let starts_on = |item| from == Some(owner(item));
+        let intersection = self.packed.nearest(ray, t_max, starts_on, |item| accept(owner(item)[0]))?;
         let [number, part] = owner(intersection.part);
         Some((number, Intersection { part, ..intersection }))
     }
 
-    /// Returns whether there is a crossing with 0 < t <= `t_max` for which `counts` is true, given the shape's number
+    /// Returns whether there is a crossing with 0 < t <= `t_max` for which `accept` is true, given the shape's number
     /// and part, and t.
     #[inline]
-    pub fn any(&self, ray: &Ray, t_max: f64, left: Option<[u32; 2]>, counts: impl Fn([u32; 2], f64) -> bool) -> bool {
+    pub fn any(&self, ray: &Ray, t_max: f64, from: Option<[u32; 2]>, accept: impl Fn([u32; 2], f64) -> bool) -> bool {
         let owner = |item: u32| self.owners[item as usize];
-        let leaves = |item| left == Some(owner(item));
-        self.packed.any(ray, t_max, leaves, |item, t| counts(owner(item), t))
+        let starts_on = |item| from == Some(owner(item));
+        self.packed.any(ray, t_max, starts_on, |item, t| accept(owner(item), t))
     }
 }

@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
 use super::{Ball, Ellipsoid, Intersection, ShapeSample, SurfacePoint};
-use crate::math::{Bounds, Cone, DMat3, DVec3, Ray, Transform, ball_surface, gamma};
+use crate::math::{Bounds, Cone, DMat3, DVec3, Ray, Transform, gamma, sample_sphere};
 
 /// A sphere; its front is the outside.
 ///
@@ -15,7 +15,7 @@ pub struct Sphere {
 }
 
 /// Probability of sampling a sphere as a whole, although mostly only a cap of it is seen.
-const ELSEWHERE: f64 = 0.05;
+const WHOLE_PROBABILITY: f64 = 0.05;
 
 impl Sphere {
     /// Creates the sphere with a radius above 0.
@@ -64,7 +64,7 @@ impl Sphere {
     }
 
     /// Returns the point of the sphere with a unit normal, rounded.
-    pub(super) fn over(&self, normal: DVec3) -> DVec3 {
+    pub(super) fn position_at(&self, normal: DVec3) -> DVec3 {
         self.center + normal * self.radius
     }
 
@@ -98,7 +98,7 @@ impl Sphere {
     pub(super) fn sample(&self, from: DVec3, u: [f64; 2]) -> ShapeSample {
         match self.cone_from(from) {
             Some(cone) => ShapeSample::of_direction(cone.sample_uniform(u), cone.uniform_pdf()),
-            None => ShapeSample::of_direction(ball_surface(u), 1.0 / (4.0 * PI)),
+            None => ShapeSample::of_direction(sample_sphere(u), 1.0 / (4.0 * PI)),
         }
     }
 
@@ -112,12 +112,12 @@ impl Sphere {
     /// where more is seen.
     pub fn sample_cap(&self, cap: &Cone, from: DVec3, [u, v]: [f64; 2]) -> Option<ShapeSample> {
         let outside = self.is_outside(from);
-        if u < ELSEWHERE || !outside {
-            let u = if outside { u / ELSEWHERE } else { u };
+        if u < WHOLE_PROBABILITY || !outside {
+            let u = if outside { u / WHOLE_PROBABILITY } else { u };
             return Some(ShapeSample { density: None, ..self.sample(from, [u, v]) });
         }
-        let normal = cap.sample_uniform([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v]);
-        let direction = self.over(normal) - from;
+        let normal = cap.sample_uniform([(u - WHOLE_PROBABILITY) / (1.0 - WHOLE_PROBABILITY), v]);
+        let direction = self.position_at(normal) - from;
         // A point behind the horizon is hidden by one in front, and the density of that one counts.
         if normal.dot(direction) < 0.0 { ShapeSample::along(direction) } else { None }
     }
@@ -125,17 +125,17 @@ impl Sphere {
     /// Returns the density per steradian with which `sample_cap` draws the direction of a ray that first meets the
     /// sphere at a distance.
     pub fn pdf_cap(&self, cap: &Cone, ray: &Ray, t: f64) -> f64 {
-        let everywhere = self.pdf(ray);
+        let whole_pdf = self.pdf(ray);
         if !self.is_outside(ray.origin) {
-            return everywhere;
+            return whole_pdf;
         }
         let normal = (ray.at(t) - self.center).normalize();
-        let of_cap = if cap.contains(normal) {
+        let cap_pdf = if cap.contains(normal) {
             t * t / (0.5 * cap.one_minus_cos * self.area() * normal.dot(ray.direction).abs())
         } else {
             0.0
         };
-        ELSEWHERE * everywhere + (1.0 - ELSEWHERE) * of_cap
+        WHOLE_PROBABILITY * whole_pdf + (1.0 - WHOLE_PROBABILITY) * cap_pdf
     }
 
     /// Samples a point of the cap that sees some of a ball. The density increases toward the middle of the cap, in the
@@ -143,7 +143,7 @@ impl Sphere {
     pub(super) fn sample_emission(&self, toward: &Ball, u: [f64; 2]) -> SurfacePoint {
         let cap = self.ball().cap_toward(toward);
         let u = if cap.is_all() { u } else { [1.0 - u[0].sqrt(), u[1]] };
-        self.point(self.over(cap.sample_uniform(u)))
+        self.point(self.position_at(cap.sample_uniform(u)))
     }
 
     /// Returns the density per unit area with which `sample_emission` draws a point.
@@ -159,16 +159,16 @@ impl Sphere {
     /// Samples a point from which light may reach a ball. Most points lie on a cap, given by its unit normals, and are
     /// uniform by area. The others are drawn by `sample_emission`.
     pub fn sample_cap_emission(&self, cap: &Cone, toward: &Ball, [u, v]: [f64; 2]) -> SurfacePoint {
-        if u < ELSEWHERE {
-            return self.sample_emission(toward, [u / ELSEWHERE, v]);
+        if u < WHOLE_PROBABILITY {
+            return self.sample_emission(toward, [u / WHOLE_PROBABILITY, v]);
         }
-        self.point(self.over(cap.sample_uniform([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v])))
+        self.point(self.position_at(cap.sample_uniform([(u - WHOLE_PROBABILITY) / (1.0 - WHOLE_PROBABILITY), v])))
     }
 
     /// Returns the density per unit area with which `sample_cap_emission` draws a point for a ball.
     pub fn pdf_cap_emission(&self, cap: &Cone, toward: &Ball, point: &SurfacePoint) -> f64 {
-        let of_cap = if cap.contains(point.normal) { 2.0 / (cap.one_minus_cos * self.area()) } else { 0.0 };
-        ELSEWHERE * self.pdf_emission(toward, point) + (1.0 - ELSEWHERE) * of_cap
+        let cap_pdf = if cap.contains(point.normal) { 2.0 / (cap.one_minus_cos * self.area()) } else { 0.0 };
+        WHOLE_PROBABILITY * self.pdf_emission(toward, point) + (1.0 - WHOLE_PROBABILITY) * cap_pdf
     }
 
     pub(super) fn is_outside(&self, point: DVec3) -> bool {

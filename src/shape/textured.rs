@@ -5,7 +5,7 @@ use std::mem::discriminant;
 use std::sync::Arc;
 
 use super::{Coordinates, Disc, Intersection, Quad, Shape, SurfacePoint};
-use crate::math::{DVec3, Ray, disk_in_square, square_around_disk, triangle_coordinates, triangle_square};
+use crate::math::{DVec3, Ray, disk_to_square, sample_triangle, square_to_disk, triangle_to_square};
 
 /// A point of the unit square, which is mapped to a part of a shape.
 ///
@@ -33,7 +33,7 @@ impl TexturedShape<'_> {
     pub fn point_at(&self, part: u32, place: [f64; 2]) -> Option<SurfacePoint> {
         Some(match (self.coordinates, self.shape) {
             (Coordinates::Sphere { inverse, .. }, Shape::Sphere(sphere)) => {
-                sphere.point(sphere.over((inverse.inverse() * on_unit_sphere(place)).normalize()))
+                sphere.point(sphere.position_at((inverse.inverse() * on_unit_sphere(place)).normalize()))
             }
             (_, Shape::Ellipsoid(ellipsoid)) => ellipsoid.point_at(on_unit_sphere(place)),
             _ => self.shape.point(&NO_RAY, &self.crossing_at(part, place)?),
@@ -55,9 +55,9 @@ impl TexturedShape<'_> {
     /// Returns the crossing with a flat part, at distance 0.
     fn crossing_at(&self, part: u32, place: [f64; 2]) -> Option<Intersection> {
         let uv = match self.coordinates {
-            Coordinates::Square if matches!(self.shape, Shape::Disc(_)) => disk_in_square(place)?,
+            Coordinates::Square if matches!(self.shape, Shape::Disc(_)) => square_to_disk(place)?,
             Coordinates::Square | Coordinates::Cube => place.map(|x| 2.0 * x - 1.0),
-            Coordinates::Triangle { .. } | Coordinates::Mesh => triangle_coordinates(place),
+            Coordinates::Triangle { .. } | Coordinates::Mesh => sample_triangle(place),
             Coordinates::Sphere { .. } | Coordinates::Plane { .. } => return None,
         };
         Some(Intersection { t: 0.0, part, uv })
@@ -67,9 +67,9 @@ impl TexturedShape<'_> {
     /// the world.
     pub fn place(&self, intersection: &Intersection, position: DVec3) -> Option<TexturedPoint> {
         let at = match self.coordinates {
-            Coordinates::Square if matches!(self.shape, Shape::Disc(_)) => square_around_disk(intersection.uv)?,
+            Coordinates::Square if matches!(self.shape, Shape::Disc(_)) => disk_to_square(intersection.uv)?,
             Coordinates::Square | Coordinates::Cube => intersection.uv.map(|x| 0.5 + 0.5 * x),
-            Coordinates::Triangle { .. } | Coordinates::Mesh => triangle_square(intersection.uv),
+            Coordinates::Triangle { .. } | Coordinates::Mesh => triangle_to_square(intersection.uv),
             Coordinates::Sphere { .. } => self.coordinates.at(self.shape, intersection, position),
             Coordinates::Plane { .. } => return None,
         };
@@ -84,7 +84,9 @@ impl TexturedShape<'_> {
             Shape::Cube(_) | Shape::Mesh(_) | Shape::Instance(_) => self.shape.part(part)?.area(),
             Shape::Triangle(triangle) => triangle.area(),
             Shape::Sphere(sphere) => sphere.area() * self.growth(place),
-            Shape::Ellipsoid(ellipsoid) => self.growth(place) / ellipsoid.density_over(ellipsoid.unit_of(position)),
+            Shape::Ellipsoid(ellipsoid) => {
+                self.growth(place) / ellipsoid.area_density(ellipsoid.to_unit_sphere(position))
+            }
             Shape::Plane(_) => return None,
         })
     }

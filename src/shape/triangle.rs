@@ -1,7 +1,7 @@
 use super::bvh::Line;
 use super::outline::{Outline, is_near};
 use super::{Intersection, SurfacePoint};
-use crate::math::{Bounds, DVec3, Ray, Transform, gamma, triangle_coordinates};
+use crate::math::{Bounds, DVec3, Ray, Transform, gamma, sample_triangle};
 
 /// A triangle; its front is the side from which the points run counterclockwise.
 ///
@@ -27,7 +27,7 @@ impl Triangle {
     }
 
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
-        Sheared::new(ray).intersect(self.points, t_max)
+        ShearedRay::new(ray).intersect(self.points, t_max)
     }
 
     pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
@@ -60,7 +60,7 @@ impl Triangle {
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {
-        Self { points: map.wound(self.points.map(|p| map.point(p))) }
+        Self { points: map.fix_winding(self.points.map(|p| map.point(p))) }
     }
 
     pub(super) fn area(&self) -> f64 {
@@ -70,31 +70,31 @@ impl Triangle {
 
     /// Returns the outline as seen from a point, if it is near.
     pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {
-        self.outline_from(from, self.middle(), self.squared())
+        self.outline_from(from, self.centroid(), self.radius2())
     }
 
-    fn outline_from(&self, from: DVec3, middle: DVec3, squared: f64) -> Option<Outline> {
+    fn outline_from(&self, from: DVec3, centroid: DVec3, radius2: f64) -> Option<Outline> {
         let [p1, p2, p3] = self.points;
-        if !is_near(middle - from, squared) {
+        if !is_near(centroid - from, radius2) {
             return None;
         }
-        Outline::seen(from, &self.points, (p2 - p1).cross(p3 - p1))
+        Outline::seen_from(from, &self.points, (p2 - p1).cross(p3 - p1))
     }
 
-    fn middle(&self) -> DVec3 {
+    fn centroid(&self) -> DVec3 {
         let [p1, p2, p3] = self.points;
         (p1 + p2 + p3) / 3.0
     }
 
     /// Returns the square of half the longest edge.
-    fn squared(&self) -> f64 {
+    fn radius2(&self) -> f64 {
         let [p1, p2, p3] = self.points;
         let longest = (p2 - p1).length_squared().max((p3 - p1).length_squared()).max((p3 - p2).length_squared());
         0.25 * longest
     }
 
     pub(super) fn sample_area(&self, u: [f64; 2]) -> DVec3 {
-        self.at(triangle_coordinates(u))
+        self.at(sample_triangle(u))
     }
 }
 
@@ -105,19 +105,19 @@ pub struct Facet {
     pub(super) normal: DVec3,
     pub(super) area: f64,
     error: DVec3,
-    middle: DVec3,
-    squared: f64,
+    centroid: DVec3,
+    radius2: f64,
 }
 
 impl Facet {
     pub(super) fn new(triangle: Triangle) -> Self {
         let (normal, area, error) = (triangle.normal(), triangle.area(), triangle.error());
-        let (middle, squared) = (triangle.middle(), triangle.squared());
-        Self { triangle, normal, area, error, middle, squared }
+        let (centroid, radius2) = (triangle.centroid(), triangle.radius2());
+        Self { triangle, normal, area, error, centroid, radius2 }
     }
 
     pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {
-        self.triangle.outline_from(from, self.middle, self.squared)
+        self.triangle.outline_from(from, self.centroid, self.radius2)
     }
 
     pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
@@ -138,7 +138,7 @@ fn scaled_normal([p1, p2, p3]: [DVec3; 3]) -> DVec3 {
 ///
 /// Woop, Benthin & Wald 2013, *Watertight Ray/Triangle Intersection*, here in 64 bits. Edge functions that round to
 /// zero are decided by their exact sign, so that of two triangles that share an edge at least one is hit.
-pub(super) struct Sheared {
+pub(super) struct ShearedRay {
     origin: DVec3,
     /// The axes that become x, y and z.
     pub(super) order: [usize; 3],
@@ -148,9 +148,9 @@ pub(super) struct Sheared {
 /// Bound of 264 chained roundings, relative to the cube of the largest difference. Nearer to the plane than this, the
 /// side on which a ray starts is decided exactly, so that a ray that leaves any triangle by any offset does not hit it
 /// again.
-const NEAR: f64 = gamma(264);
+const ROUNDING_BOUND: f64 = gamma(264);
 
-impl Sheared {
+impl ShearedRay {
     pub(super) fn new(ray: &Ray) -> Self {
         let d = ray.direction.to_array();
         let z = (0..3).max_by(|&a, &b| d[a].abs().total_cmp(&d[b].abs())).unwrap_or(2);
@@ -164,7 +164,7 @@ impl Sheared {
 
     /// Returns the ray in the form that the test of four triangles at once takes.
     pub(super) fn line(&self) -> Line {
-        Line { origin: self.order.map(|axis| self.origin[axis]), shear: self.shear.to_array(), near: NEAR }
+        Line { origin: self.order.map(|axis| self.origin[axis]), shear: self.shear.to_array(), near: ROUNDING_BOUND }
     }
 
     /// Returns the crossing with 0 < t <= `t_max`, edges and corners included.
@@ -192,7 +192,7 @@ impl Sheared {
         }
         let mut along = (u * a[2] + v * b[2] + w * c[2]) * self.shear.z;
         let size = points.map(|p| (p - self.origin).abs().max_element()).into_iter().fold(0.0, f64::max);
-        if along.abs() <= NEAR * size * size * size * self.shear.z.abs() {
+        if along.abs() <= ROUNDING_BOUND * size * size * size * self.shear.z.abs() {
             along = -triple_product(points.map(|p| difference(p, self.origin))) * self.shear.z.abs();
         }
         let t = along / determinant;
@@ -212,25 +212,25 @@ pub(super) fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
 ///
 /// Hida, Li & Bailey 2001, *Algorithms for Quad-Double Precision Floating Point Arithmetic*, section 3.
 #[derive(Clone, Copy)]
-struct Twice(f64, f64);
+struct DoubleDouble(f64, f64);
 
-impl Twice {
+impl DoubleDouble {
     /// Returns a + b without rounding (Knuth 1969, theorem B of section 4.2.2).
-    fn sum(a: f64, b: f64) -> Self {
+    fn two_sum(a: f64, b: f64) -> Self {
         let sum = a + b;
-        let of_b = sum - a;
-        Self(sum, (a - (sum - of_b)) + (b - of_b))
+        let b_virtual = sum - a;
+        Self(sum, (a - (sum - b_virtual)) + (b - b_virtual))
     }
 
     fn add(self, other: Self) -> Self {
-        let Self(high, low) = Self::sum(self.0, other.0);
-        Self::sum(high, low + (self.1 + other.1))
+        let Self(high, low) = Self::two_sum(self.0, other.0);
+        Self::two_sum(high, low + (self.1 + other.1))
     }
 
     fn times(self, other: Self) -> Self {
         let high = self.0 * other.0;
         let low = self.0.mul_add(other.0, -high);
-        Self::sum(high, low + (self.0 * other.1 + self.1 * other.0))
+        Self::two_sum(high, low + (self.0 * other.1 + self.1 * other.0))
     }
 
     fn minus(self, other: Self) -> Self {
@@ -239,12 +239,12 @@ impl Twice {
 }
 
 /// Returns p - q without rounding.
-fn difference(p: DVec3, q: DVec3) -> [Twice; 3] {
-    std::array::from_fn(|axis| Twice::sum(p[axis], -q[axis]))
+fn difference(p: DVec3, q: DVec3) -> [DoubleDouble; 3] {
+    std::array::from_fn(|axis| DoubleDouble::two_sum(p[axis], -q[axis]))
 }
 
 /// Returns a . (b x c), accurate to about 30 digits of the largest term.
-fn triple_product([a, b, c]: [[Twice; 3]; 3]) -> f64 {
+fn triple_product([a, b, c]: [[DoubleDouble; 3]; 3]) -> f64 {
     let cross = |i: usize, j: usize| b[i].times(c[j]).minus(b[j].times(c[i]));
     a[0].times(cross(1, 2)).add(a[1].times(cross(2, 0))).add(a[2].times(cross(0, 1))).0
 }

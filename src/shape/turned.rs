@@ -5,7 +5,7 @@ use super::Vertices;
 /// One side of a triangle, given by two vertices with the lower one first, and whether it runs in this order.
 struct Side {
     ends: [u32; 2],
-    rises: bool,
+    is_ascending: bool,
     triangle: u32,
 }
 
@@ -13,10 +13,10 @@ struct Side {
 /// count as one. In each piece, the smaller of the two possible numbers is counted. Returns 0 if some edge is not
 /// shared by two triangles, or if no flipping closes the mesh.
 pub(super) fn turned(vertices: &Vertices, triangles: &[[u32; 3]]) -> usize {
-    let merged = vertices.merged();
+    let welded = vertices.welded();
     let side = |triangle: usize, [a, b]: [u32; 2]| {
-        let [a, b] = [a, b].map(|corner| merged[corner as usize]);
-        Side { ends: [a.min(b), a.max(b)], rises: a < b, triangle: triangle as u32 }
+        let [a, b] = [a, b].map(|corner| welded[corner as usize]);
+        Side { ends: [a.min(b), a.max(b)], is_ascending: a < b, triangle: triangle as u32 }
     };
     let sides = triangles.iter().enumerate();
     let sides = sides.flat_map(|(at, t)| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(|ends| side(at, ends)));
@@ -25,11 +25,11 @@ pub(super) fn turned(vertices: &Vertices, triangles: &[[u32; 3]]) -> usize {
     let mut neighbors = vec![Vec::<Neighbor>::new(); triangles.len()];
     for edge in sides.chunk_by(|a, b| a.ends == b.ends) {
         let [a, b] = edge else { return 0 };
-        let is_opposed = a.rises == b.rises;
+        let is_opposed = a.is_ascending == b.is_ascending;
         neighbors[a.triangle as usize].push(Neighbor { triangle: b.triangle, is_opposed });
         neighbors[b.triangle as usize].push(Neighbor { triangle: a.triangle, is_opposed });
     }
-    of_pieces(&neighbors).unwrap_or_default()
+    count_flipped(&neighbors).unwrap_or_default()
 }
 
 /// A triangle on the other side of an edge.
@@ -41,25 +41,25 @@ struct Neighbor {
 }
 
 /// Counts the flipped triangles of all pieces. Returns `None` if a piece has only one side.
-fn of_pieces(neighbors: &[Vec<Neighbor>]) -> Option<usize> {
-    let (mut is_turned, mut all) = (vec![None; neighbors.len()], 0);
+fn count_flipped(neighbors: &[Vec<Neighbor>]) -> Option<usize> {
+    let (mut is_flipped, mut all) = (vec![None; neighbors.len()], 0);
     for first in 0..neighbors.len() {
-        if is_turned[first].is_some() {
+        if is_flipped[first].is_some() {
             continue;
         }
-        is_turned[first] = Some(false);
+        is_flipped[first] = Some(false);
         let (mut open, mut count, mut turned) = (vec![first], 0, 0);
         while let Some(triangle) = open.pop() {
-            let own = is_turned[triangle] == Some(true);
+            let own = is_flipped[triangle] == Some(true);
             (count, turned) = (count + 1, turned + usize::from(own));
             for neighbor in &neighbors[triangle] {
-                let (other, way) = (neighbor.triangle as usize, own != neighbor.is_opposed);
-                match is_turned[other] {
+                let (other, should_flip) = (neighbor.triangle as usize, own != neighbor.is_opposed);
+                match is_flipped[other] {
                     None => {
-                        is_turned[other] = Some(way);
+                        is_flipped[other] = Some(should_flip);
                         open.push(other);
                     }
-                    Some(known) if known != way => return None,
+                    Some(known) if known != should_flip => return None,
                     Some(_) => {}
                 }
             }

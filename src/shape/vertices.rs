@@ -33,15 +33,15 @@ impl Vertices {
     }
 
     /// Returns, for each vertex, one vertex that stands for all at the same place.
-    pub(super) fn merged(&self) -> Vec<u32> {
+    pub(super) fn welded(&self) -> Vec<u32> {
         // Adding 0 turns -0 into 0: they are the same place.
-        let place = |index: u32| self.at(index).to_array().map(|x| (x + 0.0).to_bits());
+        let position_bits = |index: u32| self.at(index).to_array().map(|x| (x + 0.0).to_bits());
         let mut order: Vec<u32> = (0..self.count() as u32).collect();
-        order.sort_unstable_by_key(|&index| place(index));
-        let mut merged = vec![0; order.len()];
-        for same in order.chunk_by(|&a, &b| place(a) == place(b)) {
-            same.iter().for_each(|&index| merged[index as usize] = same[0]);
+        order.sort_unstable_by_key(|&index| position_bits(index));
+        let mut welded = vec![0; order.len()];
+        for same in order.chunk_by(|&a, &b| position_bits(a) == position_bits(b)) {
+            same.iter().for_each(|&index| welded[index as usize] = same[0]);
         }
-        merged
+        welded
     }
 }

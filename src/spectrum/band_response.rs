@@ -35,19 +35,19 @@ impl BandResponse {
         }
     }
 
-    /// Returns whether heroes carry the light that arrives in `lanes`. If so, `found` gets the band and the light of
+    /// Returns whether heroes carry the light that arrives in `lanes`. If so, `visit` gets the band and the light of
     /// each.
-    pub fn heroes<const N: usize>(
+    pub fn visit_hero_bands<const N: usize>(
         &self,
         draw: &Draw<N>,
         lanes: &Lanes<N>,
         parted: bool,
-        mut found: impl FnMut(usize, f64),
+        mut visit: impl FnMut(usize, f64),
     ) -> bool {
-        let Some(heroes) = draw.carrying(lanes, parted) else { return false };
+        let Some(heroes) = draw.carrying_heroes(lanes, parted) else { return false };
         for (_, hero, weight) in heroes {
             if let Some((band, light)) = self.hero(hero, weight) {
-                found(band, light);
+                visit(band, light);
             }
         }
         true

@@ -18,7 +18,7 @@ pub(super) struct Bands {
 
 impl Bands {
     pub(super) fn new(primaries: ColorSpace, light: &Emission) -> Self {
-        let to_bands = primaries.of_xyz();
+        let to_bands = primaries.matrix_from_xyz();
         let smooth = visible::wavelengths().zip(light.spectrum()).map(|(nm, &power)| (nm, power));
         let lines = light.lines().iter().map(|&[nm, power]| (nm, power));
         let mut parts: Vec<_> = smooth

@@ -16,7 +16,7 @@ use super::projection::{Part, Projection};
 use super::table::{MAX_LANES, Pattern, PatternKind};
 use super::visible::{self, COUNT};
 use super::{
-    Curve, CurveKind, Draw, Dye, Emission, Excitable, Quantity, Response, Table, Upsampler, WavelengthBands, Waves,
+    Curve, CurveKind, Draw, Dye, Emission, PreparedDye, Quantity, Response, Table, Upsampler, WavelengthBands, Waves,
 };
 
 /// What the lanes of one render stand for: the bins in which all its spectra are tabulated.
@@ -124,7 +124,7 @@ impl Basis {
     /// are not changed.
     ///
     /// If a spectral image is wanted too, `shown` are its bands: all wavelengths in them count equally.
-    pub fn seen_under(self, lights: &[Emission], dyes: &[Dye], shown: Option<&WavelengthBands>) -> Self {
+    pub fn with_true_colors_under(self, lights: &[Emission], dyes: &[Dye], shown: Option<&WavelengthBands>) -> Self {
         let LaneKind::Wavelengths(functions) = &self.lanes else { return self };
         let mut lines: Vec<[f64; 2]> = self.wavelengths_nm[functions.len()..].iter().map(|&nm| [nm, 0.0]).collect();
         for &[nm, _] in lights.iter().flat_map(Emission::lines) {
@@ -136,17 +136,17 @@ impl Basis {
             .chain(lines.iter().map(|line| line[0]))
             .map(|at_nm| Part { at_nm, shares: vec![0.0; self.fixed_lanes()], worth: Vec::new() })
             .collect();
-        self.spread(functions, &lines, |part, lane, share| parts[part].shares[lane] = share);
-        let dyes: Vec<Excitable> = dyes.iter().map(Dye::excitable).collect();
+        self.distribute(functions, &lines, |part, lane, share| parts[part].shares[lane] = share);
+        let dyes: Vec<PreparedDye> = dyes.iter().map(Dye::prepared).collect();
         for light in lights {
             let shown = |(cmf, power): ([f64; 3], f64)| cmf.map(|x| x * power);
             let of_lines = lines.iter().map(|&[nm, _]| (visible::color_matching(nm), light.power_of_line(nm)));
             let smooth = visible::observer().zip(light.spectrum().iter().copied());
-            measure(&mut parts, smooth.chain(of_lines).map(shown).collect());
+            add_measures(&mut parts, smooth.chain(of_lines).map(shown).collect());
             for dye in &dyes {
                 let excited = dye.by(light);
                 let by_lines = lines.iter().map(|&[nm, _]| excited.by_line(nm));
-                measure(&mut parts, excited.smooth.iter().copied().chain(by_lines).map(|x| [x]).collect());
+                add_measures(&mut parts, excited.smooth.iter().copied().chain(by_lines).map(|x| [x]).collect());
             }
         }
         if parts[0].worth.is_empty() {
@@ -170,8 +170,9 @@ impl Basis {
 
     /// Draws a third of the heroes evenly over the bands of a spectral image, where the lights shine. Fixed lanes are
     /// not changed.
-    pub fn showing(self, bands: &WavelengthBands, lights: &[Emission]) -> Self {
-        let shown = |heroes: Heroes| Heroes { mixture: Arc::new(heroes.mixture.showing(bands, lights)), ..heroes };
+    pub fn spread_over_bands(self, bands: &WavelengthBands, lights: &[Emission]) -> Self {
+        let shown =
+            |heroes: Heroes| Heroes { mixture: Arc::new(heroes.mixture.spread_over_bands(bands, lights)), ..heroes };
         Self { heroes: self.heroes.map(shown), ..self }
     }
 
@@ -183,23 +184,23 @@ impl Basis {
     }
 
     /// Prepares the basis for lights that excite dyes: heroes are also drawn where they do.
-    pub fn exciting(self, dyes: &[Dye], lights: &[&Curve]) -> Self {
-        if self.excites || !self.can_excite() {
+    pub fn for_dyes(self, dyes: &[Dye], lights: &[&Curve]) -> Self {
+        if self.excites || !self.has_wavelengths() {
             return self;
         }
         let heroes = self.heroes.map(|heroes| {
             let lights = lights.iter().map(|light| Emission::new(light, self.space));
             let shining: Vec<Emission> = dyes.iter().map(|dye| dye.shines(self.space)).collect();
             let lights: Vec<Emission> = lights.chain(shining.iter().cloned()).collect();
-            let of_dye = |dye: Excitable| lights.iter().map(|light| dye.by(light)).collect::<Vec<_>>();
-            let excitations: Vec<_> = dyes.iter().map(Dye::excitable).flat_map(of_dye).collect();
-            Heroes { mixture: Arc::new(heroes.mixture.exciting(&excitations, &shining)), ..heroes }
+            let of_dye = |dye: PreparedDye| lights.iter().map(|light| dye.by(light)).collect::<Vec<_>>();
+            let excitations: Vec<_> = dyes.iter().map(Dye::prepared).flat_map(of_dye).collect();
+            Heroes { mixture: Arc::new(heroes.mixture.for_dyes(&excitations, &shining)), ..heroes }
         });
         Self { heroes, excites: true, ..self }
     }
 
     /// Returns whether lanes are wavelengths. Only for these is it known what dyes absorb.
-    pub fn can_excite(&self) -> bool {
+    pub fn has_wavelengths(&self) -> bool {
         matches!(self.lanes, LaneKind::Wavelengths(_))
     }
 
@@ -275,11 +276,11 @@ impl Basis {
 
     /// Tabulates a curve. In a basis of wavelengths, an emission is a flat table: its colors are in its response.
     pub fn tabulate(&self, quantity: Quantity, curve: &Curve) -> Table {
-        if let Some(table) = self.patterned(quantity, curve) {
+        if let Some(table) = self.tabulate_pattern(quantity, curve) {
             return table;
         }
         if quantity == Quantity::Emission {
-            return self.emission(curve);
+            return self.tabulate_emission(curve);
         }
         let reader = curve.reader(quantity, &self.upsampler);
         let is_share = matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share);
@@ -309,52 +310,55 @@ impl Basis {
     }
 
     /// Tabulates a curve that varies over a surface; `None` if it does not vary.
-    fn patterned(&self, quantity: Quantity, curve: &Curve) -> Option<Table> {
+    fn tabulate_pattern(&self, quantity: Quantity, curve: &Curve) -> Option<Table> {
         let part = if quantity == Quantity::Thickness { quantity } else { Quantity::Transmittance };
-        let of_filter = |curve: &Curve| self.tabulate(part, curve);
+        let tabulate_cell = |curve: &Curve| self.tabulate(part, curve);
         let kind = match &curve.kind {
             CurveKind::Texture(texture) => {
-                let palette = (!matches!(self.lanes, LaneKind::Rgb(_))).then(|| palette(of_filter));
+                let palette = (!matches!(self.lanes, LaneKind::Rgb(_))).then(|| palette(tabulate_cell));
                 PatternKind::Image(texture.clone(), palette)
             }
             CurveKind::Checker { cells, repeat } => {
-                PatternKind::Checker { cells: cells.each_ref().map(of_filter), repeat: *repeat }
+                PatternKind::Checker { cells: cells.each_ref().map(tabulate_cell), repeat: *repeat }
             }
             _ => return None,
         };
         let shines = quantity == Quantity::Emission;
         let level = match shines {
             true => self.tabulate(quantity, &curve.level()),
-            false => self.even(curve.scale),
+            false => self.constant_table(curve.scale),
         };
-        let most = if shines || quantity == Quantity::Thickness { f32::INFINITY } else { 1.0 };
-        Some(level.varied(Pattern { kind, most, mean: curve.kind.mean() }))
+        let limit = if shines || quantity == Quantity::Thickness { f32::INFINITY } else { 1.0 };
+        Some(level.with_pattern(Pattern { kind, limit, mean: curve.kind.mean() }))
     }
 
     /// Returns a table of the same number everywhere.
-    fn even(&self, value: f64) -> Table {
+    fn constant_table(&self, value: f64) -> Table {
         self.table(vec![value; self.fixed_lanes()], &|_| value)
     }
 
     /// Returns the width of each fixed lane's band over its wavelength; 0 for a lane that reads a single wavelength.
     fn band_widths(&self) -> Table {
-        let LaneKind::Wavelengths(functions) = &self.lanes else { return self.even(0.0) };
+        let LaneKind::Wavelengths(functions) = &self.lanes else { return self.constant_table(0.0) };
         let nodes = &self.wavelengths_nm[..functions.len()];
         let width = |i: usize| {
             let [first, last] = [i.saturating_sub(1), (i + 1).min(nodes.len() - 1)];
             if first == last { 0.0 } else { (nodes[last] - nodes[first]) / ((last - first) as f64 * nodes[i]) }
         };
         let lines = self.wavelengths_nm[functions.len()..].iter().map(|_| 0.0);
-        Table::with_fine(&(0..nodes.len()).map(width).chain(lines).collect::<Vec<_>>(), self.fine(|_| 0.0, |_| 0.0))
+        Table::with_fine(
+            &(0..nodes.len()).map(width).chain(lines).collect::<Vec<_>>(),
+            self.on_fine_grid(|_| 0.0, |_| 0.0),
+        )
     }
 
     /// Creates a table of the bins, and of the fine grid if wavelengths are drawn.
     fn table(&self, bins: Vec<f64>, value: &dyn Fn(f64) -> f64) -> Table {
-        Table::with_fine(&bins, self.fine(value, value))
+        Table::with_fine(&bins, self.on_fine_grid(value, value))
     }
 
     /// Evaluates the visible grid, followed by the lines; empty if no wavelengths are drawn.
-    pub(super) fn fine<T: Clone>(&self, smooth: impl Fn(f64) -> T, line: impl Fn(f64) -> T) -> Vec<T> {
+    pub(super) fn on_fine_grid<T: Clone>(&self, smooth: impl Fn(f64) -> T, line: impl Fn(f64) -> T) -> Vec<T> {
         let Some(Heroes { mixture, .. }) = &self.heroes else { return Vec::new() };
         let mut fine: Vec<T> = visible::wavelengths().map(smooth).collect();
         fine.extend(mixture.lines.iter().map(|&nm| line(nm)));
@@ -363,13 +367,15 @@ impl Basis {
         fine
     }
 
-    fn emission(&self, curve: &Curve) -> Table {
+    fn tabulate_emission(&self, curve: &Curve) -> Table {
         let emission = || Emission::new(curve, self.space);
         match (&self.lanes, curve.kind.rgb()) {
             (LaneKind::Rgb(_), Some(rgb)) if curve.luminance.is_none() => Table::new(rgb.map(|x| x * curve.scale)),
-            (LaneKind::Rgb(_), _) => Table::new(apply(&ColorSpace::Rec709.of_xyz(), emission().xyz())),
-            (LaneKind::Prefiltered(_), _) => Table::new(apply(&ColorSpace::Rec2020.of_xyz(), emission().xyz())),
-            (LaneKind::Wavelengths(_), _) => self.even(self.level(&emission())),
+            (LaneKind::Rgb(_), _) => Table::new(apply(&ColorSpace::Rec709.matrix_from_xyz(), emission().xyz())),
+            (LaneKind::Prefiltered(_), _) => {
+                Table::new(apply(&ColorSpace::Rec2020.matrix_from_xyz(), emission().xyz()))
+            }
+            (LaneKind::Wavelengths(_), _) => self.constant_table(self.level(&emission())),
         }
     }
 
@@ -382,29 +388,32 @@ impl Basis {
     /// Returns what the lanes are worth to the sensor when a path ends in a light of this emission.
     pub fn response(&self, curve: &Curve) -> Response {
         let curve = &*curve.level();
-        let of_matrix = |matrix: &Matrix| Response::new(&[0, 1, 2].map(|lane| matrix.map(|row| row[lane])), Vec::new());
+        let matrix_response =
+            |matrix: &Matrix| Response::new(&[0, 1, 2].map(|lane| matrix.map(|row| row[lane])), Vec::new());
         match &self.lanes {
             LaneKind::Rgb(_) if curve.is_measured() || curve.luminance.is_some() => {
-                of_matrix(&product(&self.space.of_xyz(), &ColorSpace::Rec709.to_xyz()))
+                matrix_response(&product(&self.space.matrix_from_xyz(), &ColorSpace::Rec709.to_xyz()))
             }
-            LaneKind::Rgb(_) => of_matrix(&self.space.of_rec709()),
-            LaneKind::Prefiltered(_) => of_matrix(&product(&self.space.of_xyz(), &ColorSpace::Rec2020.to_xyz())),
+            LaneKind::Rgb(_) => matrix_response(&self.space.matrix_from_rec709()),
+            LaneKind::Prefiltered(_) => {
+                matrix_response(&product(&self.space.matrix_from_xyz(), &ColorSpace::Rec2020.to_xyz()))
+            }
             LaneKind::Wavelengths(functions) => {
                 let emission = Emission::new(curve, self.space);
-                let lines = emission.lines().iter().map(|&[nm, power]| emission.film(nm).map(|x| x * power));
+                let lines = emission.lines().iter().map(|&[nm, power]| emission.film_color(nm).map(|x| x * power));
                 let light = emission.columns().chain(lines).collect();
-                self.response_to(&emission, functions, light)
+                self.integrate_response(&emission, functions, light)
             }
         }
     }
 
     /// Returns what the lanes are worth to a dye when a path ends in a light of this emission: in all three channels,
     /// the number that stands for the brightness of what the dye emits. It is 0 if lanes are not wavelengths.
-    pub fn excitation(&self, dye: &Excitable, light: &Emission) -> Response {
+    pub fn excitation(&self, dye: &PreparedDye, light: &Emission) -> Response {
         let LaneKind::Wavelengths(functions) = &self.lanes else { return Response::new(&[], Vec::new()) };
         let level = self.level(&dye.dye().shines(self.space));
         let excited = dye.by(light).parts().map(|x| [level * x; 3]).collect();
-        self.response_to(light, functions, excited)
+        self.integrate_response(light, functions, excited)
     }
 
     /// Returns what the lanes contribute to bands of wavelengths when a path ends in a light of this emission; `None`
@@ -419,7 +428,7 @@ impl Basis {
             columns[lane * bands.count() + band] += light * unit / bands.known_nm(band);
         };
         let lines = emission.lines();
-        self.spread(functions, lines, |part, lane, weight| match part.checked_sub(COUNT) {
+        self.distribute(functions, lines, |part, lane, weight| match part.checked_sub(COUNT) {
             None => {
                 let light = weight * emission.spectrum()[part];
                 bands.around(visible::START_NM + part as f64).for_each(|(band, width)| add(lane, band, light * width));
@@ -432,22 +441,22 @@ impl Basis {
         let at = |nm: f64| unit * emission.spectrum()[(nm - visible::START_NM) as usize];
         let line = |nm: f64| unit * emission.power_of_line(nm);
         let lines_nm = self.heroes.as_ref().map_or(&[][..], |heroes| &*heroes.mixture.lines);
-        Some(BandResponse::new(bands, columns, self.fine(at, line), lines_nm))
+        Some(BandResponse::new(bands, columns, self.on_fine_grid(at, line), lines_nm))
     }
 
-    /// Distributes each part of a light over the lanes. Calls `carries` with the number of the part (those of the
+    /// Distributes each part of a light over the lanes. Calls `add_share` with the number of the part (those of the
     /// visible grid, then the lines), a lane, and the share that the lane carries.
-    fn spread(&self, functions: &[Vec<f64>], lines: &[[f64; 2]], mut carries: impl FnMut(usize, usize, f64)) {
+    fn distribute(&self, functions: &[Vec<f64>], lines: &[[f64; 2]], mut add_share: impl FnMut(usize, usize, f64)) {
         for part in 0..COUNT {
-            functions.iter().enumerate().for_each(|(lane, function)| carries(part, lane, function[part]));
+            functions.iter().enumerate().for_each(|(lane, function)| add_share(part, lane, function[part]));
         }
         for (part, &[nm, _]) in (COUNT..).zip(lines) {
-            let own = self.wavelengths_nm[functions.len()..].iter().position(|&lane| lane == nm);
-            match own {
-                Some(lane) => carries(part, functions.len() + lane, 1.0),
+            let own_lane = self.wavelengths_nm[functions.len()..].iter().position(|&lane| lane == nm);
+            match own_lane {
+                Some(lane) => add_share(part, functions.len() + lane, 1.0),
                 None => {
                     let carried = functions.iter().map(|function| visible::read(function, nm));
-                    carried.enumerate().for_each(|(lane, share)| carries(part, lane, share));
+                    carried.enumerate().for_each(|(lane, share)| add_share(part, lane, share));
                 }
             }
         }
@@ -455,12 +464,12 @@ impl Basis {
 
     /// Integrates what each part of a light is worth, over the light's level, with the function of each lane. `light`
     /// holds the worth per nm at the wavelengths of the visible grid, then that of the lines.
-    fn response_to(&self, emission: &Emission, functions: &[Vec<f64>], light: Vec<[f64; 3]>) -> Response {
+    fn integrate_response(&self, emission: &Emission, functions: &[Vec<f64>], light: Vec<[f64; 3]>) -> Response {
         let level = self.level(emission);
         let per_level = |color: [f64; 3]| if level == 0.0 { [0.0; 3] } else { color.map(|x| x / level) };
         let light: Vec<[f64; 3]> = light.into_iter().map(per_level).collect();
         let mut columns = vec![[0.0; 3]; self.fixed_lanes()];
-        self.spread(functions, emission.lines(), |part, lane, weight| {
+        self.distribute(functions, emission.lines(), |part, lane, weight| {
             (0..3).for_each(|c| columns[lane][c] += weight * light[part][c]);
         });
         let at = |nm: f64| light[(nm - visible::START_NM) as usize];
@@ -469,12 +478,12 @@ impl Basis {
             let here = of_lines.clone().filter(|(line, _)| line[0] == nm).map(|(_, color)| *color);
             here.fold([0.0; 3], |sum, color| std::array::from_fn(|c| sum[c] + color[c]))
         };
-        Response::new(&columns, self.fine(at, line))
+        Response::new(&columns, self.on_fine_grid(at, line))
     }
 }
 
 /// Adds what each part of the light is worth to some measures, as a share of the sum. Adds nothing if the sum is 0.
-fn measure<const M: usize>(parts: &mut [Part], worth: Vec<[f64; M]>) {
+fn add_measures<const M: usize>(parts: &mut [Part], worth: Vec<[f64; M]>) {
     let sum = worth.iter().flatten().map(|x| x.abs()).sum::<f64>();
     if sum > 0.0 {
         parts.iter_mut().zip(worth).for_each(|(part, worth)| part.worth.extend(worth.map(|x| x / sum)));

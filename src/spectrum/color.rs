@@ -46,8 +46,8 @@ pub struct Primaries {
 impl Primaries {
     /// Returns the matrix to CIE XYZ. SMPTE RP 177-1993, *Derivation of Basic Television Color Equations*.
     fn to_xyz(self) -> Matrix {
-        let columns = transpose([self.red, self.green, self.blue].map(from_chromaticity_or_dark));
-        let strengths = apply(&inverse(&columns), from_chromaticity(self.white));
+        let columns = transpose([self.red, self.green, self.blue].map(xyz_from_primary));
+        let strengths = apply(&inverse(&columns), xyz_from_chromaticity(self.white));
         columns.map(|row| std::array::from_fn(|i| row[i] * strengths[i]))
     }
 
@@ -70,8 +70,9 @@ impl Primaries {
         if (green[0] * blue[1] - green[1] * blue[0]).abs() < 1e-6 {
             return None;
         }
-        let adapted = product(&adaptation(from_chromaticity(self.white), ColorSpace::Rec709.white()), &self.to_xyz());
-        let matrix = product(&ColorSpace::Rec709.of_xyz(), &adapted);
+        let adapted =
+            product(&adaptation(xyz_from_chromaticity(self.white), ColorSpace::Rec709.white()), &self.to_xyz());
+        let matrix = product(&ColorSpace::Rec709.matrix_from_xyz(), &adapted);
         matrix.iter().flatten().all(|x| x.is_finite()).then_some(matrix)
     }
 }
@@ -81,8 +82,8 @@ impl Primaries {
 ///
 /// # Errors
 /// If the meaning of the colors is not known; the message says why.
-pub fn matrix_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) -> Result<Matrix, String> {
-    if let Some(space) = interop_id.and_then(ColorSpace::of_interop_id).or_else(|| primaries?.space()) {
+pub fn file_to_rec709(interop_id: Option<&str>, primaries: Option<Primaries>) -> Result<Matrix, String> {
+    if let Some(space) = interop_id.and_then(ColorSpace::from_interop_id).or_else(|| primaries?.space()) {
         return Ok(space.to_rec709());
     }
     match (primaries, interop_id.filter(|id| *id != "unknown")) {
@@ -94,7 +95,7 @@ pub fn matrix_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) ->
 }
 
 /// Returns what messages call a file's colors: the space that it names or whose primaries it has, or the primaries.
-pub fn space_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) -> String {
+pub fn describe_file_colors(interop_id: Option<&str>, primaries: Option<Primaries>) -> String {
     let point = |[x, y]: [f64; 2]| format!("({}, {})", x as f32, y as f32);
     match (interop_id, primaries.and_then(Primaries::space), primaries) {
         (Some(id), ..) => format!("the color space {id}"),
@@ -128,12 +129,12 @@ impl ColorSpace {
     }
 
     /// Returns the space that a `colorInteropID` names.
-    fn of_interop_id(id: &str) -> Option<Self> {
+    fn from_interop_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|space| space.interop_id() == id)
     }
 
     /// Returns the space that people call by a name such as "sRGB", "ACEScg" or "Rec.2020".
-    pub fn called(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         const NAMES: [(&str, ColorSpace); 9] = [
             ("acescg", ColorSpace::AcesCg),
             ("ap1", ColorSpace::AcesCg),
@@ -165,7 +166,7 @@ impl ColorSpace {
 
     /// Returns the XYZ of the space's white, with Y = 1.
     pub fn white(self) -> [f64; 3] {
-        from_chromaticity(if self == Self::Xyz { D65 } else { self.primaries().white })
+        xyz_from_chromaticity(if self == Self::Xyz { D65 } else { self.primaries().white })
     }
 
     /// Returns the CIE illuminant that stands for the space's white where a spectrum is needed.
@@ -186,22 +187,22 @@ impl ColorSpace {
     }
 
     /// Returns the matrix from CIE XYZ to film color.
-    pub fn of_xyz(self) -> Matrix {
+    pub fn matrix_from_xyz(self) -> Matrix {
         inverse(&self.to_xyz())
     }
 
     /// Returns the matrix from film color to linear Rec.709, adapted to its white.
     pub fn to_rec709(self) -> Matrix {
-        if self == Self::Rec709 { IDENTITY } else { inverse(&self.of_rec709()) }
+        if self == Self::Rec709 { IDENTITY } else { inverse(&self.matrix_from_rec709()) }
     }
 
     /// Returns the matrix from linear Rec.709 to film color, adapted to the film's white.
-    pub(super) fn of_rec709(self) -> Matrix {
+    pub(super) fn matrix_from_rec709(self) -> Matrix {
         if self == Self::Rec709 {
             return IDENTITY;
         }
         let adapted = product(&adaptation(Self::Rec709.white(), self.white()), &Self::Rec709.to_xyz());
-        product(&self.of_xyz(), &adapted)
+        product(&self.matrix_from_xyz(), &adapted)
     }
 }
 
@@ -209,12 +210,12 @@ impl ColorSpace {
 pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Returns the XYZ of a chromaticity, with Y = 1.
-fn from_chromaticity([x, y]: [f64; 2]) -> [f64; 3] {
+fn xyz_from_chromaticity([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }
 
 /// Returns the XYZ of a chromaticity that may have y = 0, with X + Y + Z = 1.
-fn from_chromaticity_or_dark([x, y]: [f64; 2]) -> [f64; 3] {
+fn xyz_from_primary([x, y]: [f64; 2]) -> [f64; 3] {
     [x, y, 1.0 - x - y]
 }
 
@@ -279,10 +280,10 @@ mod tests {
     #[test]
     fn white_is_one_in_every_space_and_white_in_xyz() {
         for space in ColorSpace::ALL.into_iter().filter(|space| *space != ColorSpace::Xyz) {
-            assert_near(apply(&space.of_xyz(), space.white()), [1.0; 3], 1e-12);
-            assert_near(apply(&space.of_rec709(), [1.0; 3]), [1.0; 3], 1e-12);
+            assert_near(apply(&space.matrix_from_xyz(), space.white()), [1.0; 3], 1e-12);
+            assert_near(apply(&space.matrix_from_rec709(), [1.0; 3]), [1.0; 3], 1e-12);
         }
-        assert_near(apply(&ColorSpace::Xyz.of_rec709(), [1.0; 3]), ColorSpace::Xyz.white(), 1e-12);
+        assert_near(apply(&ColorSpace::Xyz.matrix_from_rec709(), [1.0; 3]), ColorSpace::Xyz.white(), 1e-12);
     }
 
     /// IEC 61966-2-1, equation 7, prints the Rec.709 matrix to four decimals.
@@ -299,7 +300,7 @@ mod tests {
         for space in [ColorSpace::Rec709, ColorSpace::AcesCg, ColorSpace::Rec2020] {
             let matrix = space.primaries().to_rec709().expect("the primaries span a triangle");
             (0..3).for_each(|i| assert_near(matrix[i], space.to_rec709()[i], 1e-12));
-            assert_eq!(ColorSpace::of_interop_id(space.interop_id()), Some(space));
+            assert_eq!(ColorSpace::from_interop_id(space.interop_id()), Some(space));
         }
         let line = Primaries { red: [0.2, 0.2], green: [0.3, 0.3], blue: [0.4, 0.4], white: D65 };
         assert_eq!(line.to_rec709(), None);

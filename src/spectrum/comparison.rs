@@ -18,7 +18,7 @@ pub fn collapsing(space: ColorSpace) -> Basis {
 ///
 /// # Panics
 /// If the lane is not an interpolated wavelength, or if its reflectances depend on all other lanes.
-pub fn alone(basis: &Basis, lane: usize) -> Basis {
+pub fn basis_of_lane(basis: &Basis, lane: usize) -> Basis {
     let LaneKind::Wavelengths(functions) = &basis.lanes else { panic!("bands have no wavelengths") };
     let mut alone = basis.clone();
     alone.lanes = LaneKind::Wavelengths(Arc::new(vec![functions[lane].clone()]));
@@ -29,7 +29,7 @@ pub fn alone(basis: &Basis, lane: usize) -> Basis {
 }
 
 /// Returns a response that keeps one fixed lane and drops all others.
-pub fn only(response: &Response, lane: usize) -> Response {
+pub fn response_of_lane(response: &Response, lane: usize) -> Response {
     let columns = std::array::from_fn(|i| if i == lane { response.columns[i] } else { [0.0; 4] });
     Response { columns: Arc::new(columns), fine: vec![[0.0; 3]; response.fine.len()].into() }
 }

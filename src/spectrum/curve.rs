@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::data::{self, Glass, Grid, Metal};
-use super::texture::square;
+use super::texture::checker_cell;
 use super::{Quantity, Texture, Upsampler};
 
 /// Where the bands of the `rgb` basis read an index, in nm: the hydrogen C, mercury e and hydrogen F lines.
@@ -62,11 +62,11 @@ pub enum CurveKind {
         c: Vec<f64>,
     },
     /// The index of a catalog glass.
-    Glass(Named<Glass>),
+    Glass(CatalogEntry<Glass>),
     /// The index n or the extinction k of a catalog metal.
-    Metal(Named<Metal>),
+    Metal(CatalogEntry<Metal>),
     /// A measured reflectance from the catalog.
-    Reflectance(Named<Grid>),
+    Reflectance(CatalogEntry<Grid>),
     /// A standard light from the catalog, Y = 1.
     Illuminant(Arc<Grid>),
     /// A blackbody's light at a temperature in kelvin, Y = 1.
@@ -86,14 +86,14 @@ pub enum CurveKind {
 
 /// An entry of the catalog.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Named<T> {
+pub struct CatalogEntry<T> {
     /// The name by which it was looked up. Several entries may share it.
     pub name: String,
     /// The entry.
     pub entry: Arc<T>,
 }
 
-impl<T> Named<T> {
+impl<T> CatalogEntry<T> {
     /// Creates the entry that a name stands for.
     pub fn new(name: &str, entry: T) -> Self {
         Self { name: name.to_owned(), entry: Arc::new(entry) }
@@ -115,17 +115,17 @@ impl From<CurveKind> for Curve {
 impl CurveKind {
     /// Returns the index of the catalog glass of that name, if there is one.
     pub fn glass(name: &str) -> Option<Self> {
-        data::glass(name).map(|glass| Self::Glass(Named::new(name, glass)))
+        data::glass(name).map(|glass| Self::Glass(CatalogEntry::new(name, glass)))
     }
 
     /// Returns n and k of the catalog metal of that name, if there is one.
     pub fn metal(name: &str) -> Option<Self> {
-        data::metal(name).map(|metal| Self::Metal(Named::new(name, metal)))
+        data::metal(name).map(|metal| Self::Metal(CatalogEntry::new(name, metal)))
     }
 
     /// Returns the measured reflectance of that name from the catalog, if there is one.
     pub fn reflectance(name: &str) -> Option<Self> {
-        data::reflectance(name).map(|reflectance| Self::Reflectance(Named::new(name, reflectance)))
+        data::reflectance(name).map(|reflectance| Self::Reflectance(CatalogEntry::new(name, reflectance)))
     }
 
     /// Returns the standard light of that name from the catalog, if there is one.
@@ -174,7 +174,7 @@ impl CurveKind {
         match self {
             Self::Texture(texture) => texture.color(uv).iter().map(|&x| f64::from(x)).sum::<f64>() / 3.0,
             Self::Checker { cells, repeat } => {
-                let cell = &cells[square(*repeat, uv)];
+                let cell = &cells[checker_cell(*repeat, uv)];
                 cell.scale * cell.kind.mean()
             }
             _ => self.mean(),
@@ -265,13 +265,13 @@ impl Curve {
 
     /// Returns spectra that represent all those on the surface: the curve itself if it does not vary, the curves of a
     /// checkerboard, or the mean and the most colorful texel of an image.
-    pub fn shades(&self) -> Vec<Cow<'_, Self>> {
+    pub fn representatives(&self) -> Vec<Cow<'_, Self>> {
         match &self.kind {
             CurveKind::Texture(Texture { image, .. }) => {
                 let of = |rgb: [f64; 3]| Cow::Owned(Self { kind: CurveKind::Rgb(rgb), ..self.clone() });
                 vec![of(image.mean()), of(image.most_colorful().map(f64::from))]
             }
-            CurveKind::Checker { cells, .. } => cells.iter().flat_map(Self::shades).collect(),
+            CurveKind::Checker { cells, .. } => cells.iter().flat_map(Self::representatives).collect(),
             _ => vec![Cow::Borrowed(self)],
         }
     }
@@ -300,7 +300,7 @@ pub fn sellmeier_squared(b: &[f64], c: &[f64], um: f64) -> f64 {
 }
 
 /// Returns Cauchy's A and B (um^2) for n_d and V_d, with the lines C 656.27, d 587.56 and F 486.13 nm.
-pub fn cauchy_through(nd: f64, vd: f64) -> [f64; 2] {
+pub fn cauchy_from_abbe(nd: f64, vd: f64) -> [f64; 2] {
     let inverse_square = |nm: f64| 1.0 / (nm * 1e-3 * nm * 1e-3);
     let b = (nd - 1.0) / (vd * (inverse_square(486.13) - inverse_square(656.27)));
     [nd - b * inverse_square(587.56), b]

@@ -5,26 +5,26 @@ use super::{Curve, CurveKind};
 
 /// Values made from curves, each made once for all equal curves: thousands of lamps are often alike.
 #[derive(Debug)]
-pub struct Distinct<T> {
+pub struct CurveCache<T> {
     known: HashMap<u64, Vec<(Curve, T)>>,
 }
 
-impl<T> Default for Distinct<T> {
+impl<T> Default for CurveCache<T> {
     fn default() -> Self {
         Self { known: HashMap::new() }
     }
 }
 
-impl<T: Clone> Distinct<T> {
+impl<T: Clone> CurveCache<T> {
     /// Returns the value that was made from an equal curve, or makes it now.
     pub fn of(&mut self, curve: &Curve, make: impl FnOnce(&Curve) -> T) -> T {
-        let alike = self.known.entry(hash(curve)).or_default();
-        if let Some((_, known)) = alike.iter().find(|(other, _)| other == curve) {
+        let bucket = self.known.entry(hash(curve)).or_default();
+        if let Some((_, known)) = bucket.iter().find(|(other, _)| other == curve) {
             return known.clone();
         }
-        let made = make(curve);
-        alike.push((curve.clone(), made.clone()));
-        made
+        let value = make(curve);
+        bucket.push((curve.clone(), value.clone()));
+        value
     }
 }
 

@@ -1,6 +1,6 @@
-use super::palette::filter;
+use super::palette::tint_factor;
 use super::table::{Pattern, PatternKind};
-use super::texture::square;
+use super::texture::checker_cell;
 use super::{Lanes, Table};
 
 /// What each lane of a camera sample stands for. Fixed lanes read the bins of every table. Heroes read a wavelength
@@ -73,7 +73,7 @@ impl<const N: usize> Draw<N> {
     pub fn read(&self, table: &Table) -> Lanes<N> {
         let mut lanes = Lanes(*table.weights());
         for (lane, hero) in self.heroes() {
-            lanes.0[lane] = table.between(hero.below, hero.fraction) as f32;
+            lanes.0[lane] = table.interpolate(hero.below, hero.fraction) as f32;
         }
         lanes
     }
@@ -99,28 +99,28 @@ impl<const N: usize> Draw<N> {
     #[inline]
     fn tint_by(&self, palette: Option<&Vec<Table>>, color: [f32; 3], bounded: bool) -> Lanes<N> {
         match palette {
-            Some(palette) => filter(palette, |tint| self.read(tint), color, bounded),
+            Some(palette) => tint_factor(palette, |tint| self.read(tint), color, bounded),
             None => Lanes::from_fn(|i| color[i.min(2)]),
         }
     }
 
     #[inline(never)]
     fn read_pattern(&self, table: &Table, pattern: &Pattern, uv: [f64; 2]) -> Lanes<N> {
-        let filter = match &pattern.kind {
+        let tint_factor = match &pattern.kind {
             PatternKind::Image(texture, palette) => {
-                self.tint_by(palette.as_ref(), texture.color(uv), pattern.most == 1.0)
+                self.tint_by(palette.as_ref(), texture.color(uv), pattern.limit == 1.0)
             }
-            PatternKind::Checker { cells, repeat } => self.read_at(&cells[square(*repeat, uv)], uv),
+            PatternKind::Checker { cells, repeat } => self.read_at(&cells[checker_cell(*repeat, uv)], uv),
         };
-        let product = self.read(table) * filter;
-        Lanes::from_fn(|i| product[i].min(pattern.most))
+        let product = self.read(table) * tint_factor;
+        Lanes::from_fn(|i| product[i].min(pattern.limit))
     }
 
     /// Reads a refractive index: one number per lane, in full precision.
     pub fn read_exact(&self, table: &Table) -> [f64; N] {
         let mut lanes = *table.fixed();
         for (lane, hero) in self.heroes() {
-            lanes[lane] = table.between(hero.below, hero.fraction);
+            lanes[lane] = table.interpolate(hero.below, hero.fraction);
         }
         lanes
     }
@@ -128,7 +128,7 @@ impl<const N: usize> Draw<N> {
     /// Reads the number of a single lane, in full precision.
     pub fn read_lane(&self, table: &Table, lane: usize) -> f64 {
         match self.heroes[..self.count].get(lane.wrapping_sub(self.fixed)) {
-            Some(hero) => table.between(hero.below, hero.fraction),
+            Some(hero) => table.interpolate(hero.below, hero.fraction),
             None => table.fixed::<N>()[lane],
         }
     }
@@ -137,7 +137,7 @@ impl<const N: usize> Draw<N> {
     #[inline]
     pub fn range(&self, table: &Table) -> [f64; 2] {
         self.heroes().fold(table.fixed_range, |[least, most], (_, hero)| {
-            let x = table.between(hero.below, hero.fraction);
+            let x = table.interpolate(hero.below, hero.fraction);
             [if x < least { x } else { least }, if x > most { x } else { most }]
         })
     }
@@ -177,7 +177,11 @@ impl<const N: usize> Draw<N> {
 
     /// Returns the lane of each hero, the hero, and the weight of the light that arrives in that lane; `None` if the
     /// fixed lanes carry the light.
-    pub(super) fn carrying(&self, lanes: &Lanes<N>, parted: bool) -> Option<impl Iterator<Item = (usize, &Hero, f64)>> {
+    pub(super) fn carrying_heroes(
+        &self,
+        lanes: &Lanes<N>,
+        parted: bool,
+    ) -> Option<impl Iterator<Item = (usize, &Hero, f64)>> {
         let factor = self.hero_factor(parted)?;
         Some(self.heroes().map(move |(lane, hero)| (lane, hero, factor * hero.factor * f64::from(lanes[lane]))))
     }

@@ -39,7 +39,7 @@ impl Excited {
 
 /// A dye with all values that are the same under every light.
 #[derive(Clone, Debug)]
-pub struct Excitable<'a> {
+pub struct PreparedDye<'a> {
     dye: &'a Dye,
     /// Share of light that it absorbs, on the visible grid.
     absorbed: Vec<f64>,
@@ -48,7 +48,7 @@ pub struct Excitable<'a> {
     shines: f64,
 }
 
-impl Excitable<'_> {
+impl PreparedDye<'_> {
     /// Returns the dye.
     pub fn dye(&self) -> &Dye {
         self.dye
@@ -72,13 +72,13 @@ pub struct EnergyExcess {
     /// The wavelength of the light, in nm.
     pub nm: f64,
     /// Share of the light that is reflected, or absorbed by the dye.
-    pub taken: f64,
+    pub used_share: f64,
     /// Share of the light's power that is reflected or emitted again.
-    pub given: f64,
+    pub returned_share: f64,
 }
 
 /// Tolerance for the rounded digits of curves.
-const ROUNDED: f64 = 1e-9;
+const ROUNDING_TOLERANCE: f64 = 1e-9;
 
 impl Dye {
     /// Returns the share of light that it absorbs at a wavelength in nm, 0 to 1.
@@ -97,16 +97,18 @@ impl Dye {
     }
 
     /// Returns the first wavelength at which a surface with this reflectance would return more light than it receives.
-    pub fn excess(&self, reflectance: &Curve) -> Option<EnergyExcess> {
+    pub fn energy_excess(&self, reflectance: &Curve) -> Option<EnergyExcess> {
         let (upsampler, absorbed, power) =
             (Upsampler::new(ColorSpace::default()), self.absorbed(), self.power_per_nm());
         let reflected = reflectance.reader(Quantity::Reflectance, &upsampler);
         let at = |nm: f64| EnergyExcess {
             nm,
-            taken: reflected(nm) + absorbed(nm),
-            given: reflected(nm) + absorbed(nm) * power * nm,
+            used_share: reflected(nm) + absorbed(nm),
+            returned_share: reflected(nm) + absorbed(nm) * power * nm,
         };
-        visible::wavelengths().map(at).find(|found| found.taken.max(found.given) > 1.0 + ROUNDED)
+        visible::wavelengths()
+            .map(at)
+            .find(|found| found.used_share.max(found.returned_share) > 1.0 + ROUNDING_TOLERANCE)
     }
 
     /// Returns the light that it emits, for a film.
@@ -115,10 +117,10 @@ impl Dye {
     }
 
     /// Prepares the dye for lights: computes what is the same under all of them.
-    pub fn excitable(&self) -> Excitable<'_> {
+    pub fn prepared(&self) -> PreparedDye<'_> {
         let (shines, absorbed) = (self.shines(ColorSpace::default()), self.absorbed());
         let total = shines.spectrum().iter().sum::<f64>();
-        Excitable {
+        PreparedDye {
             dye: self,
             absorbed: visible::wavelengths().map(absorbed).collect(),
             power_per_nm: self.power_of(&shines),

@@ -14,7 +14,7 @@ pub struct Emission {
     lines: Vec<[f64; 2]>,
     /// Factors on XYZ that make the white of numbers and `rgb` exactly the film's.
     correction: [f64; 3],
-    film_of_xyz: Matrix,
+    xyz_to_film: Matrix,
 }
 
 /// The film colors of a light, wavelength by wavelength.
@@ -26,9 +26,9 @@ pub struct FilmColors {
 }
 
 impl FilmColors {
-    /// Returns the film color of the light, of which `left` remains at each wavelength.
-    pub fn color(&self, left: &[f64]) -> [f64; 3] {
-        weighted_sum(left.iter().copied().zip(self.columns.iter().copied()))
+    /// Returns the film color of the light, of which `transmitted` remains at each wavelength.
+    pub fn color(&self, transmitted: &[f64]) -> [f64; 3] {
+        weighted_sum(transmitted.iter().copied().zip(self.columns.iter().copied()))
     }
 }
 
@@ -39,11 +39,11 @@ impl Emission {
     /// multiples of the film's white.
     pub fn new(curve: &Curve, space: ColorSpace) -> Self {
         let curve = &*curve.level();
-        let (mut lines, unit) = (Vec::new(), 1.0 / visible::luminous());
+        let (mut lines, unit) = (Vec::new(), 1.0 / visible::y_integral());
         let plain = |power: &dyn Fn(f64) -> f64| (visible::wavelengths().map(power).collect(), [1.0; 3]);
         let (spectrum, correction): (Vec<f64>, _) = match &curve.kind {
-            CurveKind::Number(level) => colored([*level; 3], space),
-            CurveKind::Rgb(rgb) => colored(*rgb, space),
+            CurveKind::Number(level) => spectrum_of_color([*level; 3], space),
+            CurveKind::Rgb(rgb) => spectrum_of_color(*rgb, space),
             CurveKind::Lines(pairs) => {
                 lines = pairs.iter().map(|&[nm, power]| [nm, power * unit]).collect();
                 plain(&|_| 0.0)
@@ -51,8 +51,8 @@ impl Emission {
             CurveKind::Samples(samples) => plain(&|nm| unit * on_grid(samples, nm)),
             kind => plain(&*kind.values(Quantity::Emission)),
         };
-        let film_of_xyz = space.of_xyz().map(|row| std::array::from_fn(|i| row[i] * correction[i]));
-        let mut emission = Self { spectrum, lines, correction, film_of_xyz };
+        let xyz_to_film = space.matrix_from_xyz().map(|row| std::array::from_fn(|i| row[i] * correction[i]));
+        let mut emission = Self { spectrum, lines, correction, xyz_to_film };
         let luminance = emission.xyz()[1];
         let is_absolute =
             curve.kind.rgb().is_some() || matches!(curve.kind, CurveKind::Lines(_) | CurveKind::Samples(_));
@@ -79,7 +79,7 @@ impl Emission {
     /// Returns the factor from numbers of the spectrum to radiance, per nm and of lines, on the scale on which a flat
     /// spectrum of 1 is 1 and has Y = 1.
     pub(super) fn unit(&self) -> f64 {
-        visible::luminous() * self.correction[1]
+        visible::y_integral() * self.correction[1]
     }
 
     /// Returns all of its power over the width of the visible range, on the scale on which a flat spectrum of 1 is 1
@@ -99,7 +99,7 @@ impl Emission {
 
     /// Returns its CIE XYZ.
     pub fn xyz(&self) -> [f64; 3] {
-        let sum = self.uncorrected();
+        let sum = self.uncorrected_xyz();
         std::array::from_fn(|i| sum[i] * self.correction[i])
     }
 
@@ -110,17 +110,17 @@ impl Emission {
 
     /// Returns its film color.
     pub fn color(&self) -> [f64; 3] {
-        apply(&self.film_of_xyz, self.uncorrected())
+        apply(&self.xyz_to_film, self.uncorrected_xyz())
     }
 
-    fn uncorrected(&self) -> [f64; 3] {
+    fn uncorrected_xyz(&self) -> [f64; 3] {
         let lines = self.lines.iter().map(|&[nm, power]| (power, color_matching(nm)));
         weighted_sum(self.spectrum.iter().copied().zip(visible::observer()).chain(lines))
     }
 
     /// Returns the film color of a power of 1 at a wavelength.
-    pub fn film(&self, wavelength_nm: f64) -> [f64; 3] {
-        apply(&self.film_of_xyz, color_matching(wavelength_nm))
+    pub fn film_color(&self, wavelength_nm: f64) -> [f64; 3] {
+        apply(&self.xyz_to_film, color_matching(wavelength_nm))
     }
 
     /// Returns the film color per nm at each wavelength of the visible grid, without the lines.
@@ -128,12 +128,12 @@ impl Emission {
         self.spectrum
             .iter()
             .zip(visible::observer())
-            .map(|(power, cmf)| apply(&self.film_of_xyz, cmf.map(|x| power * x)))
+            .map(|(power, cmf)| apply(&self.xyz_to_film, cmf.map(|x| power * x)))
     }
 
     /// Returns its film colors: per nm at the wavelengths of the visible grid, and at its lines.
     pub fn film_colors(&self) -> FilmColors {
-        let of_line = |&[nm, power]: &[f64; 2]| self.film(nm).map(|x| x * power);
+        let of_line = |&[nm, power]: &[f64; 2]| self.film_color(nm).map(|x| x * power);
         FilmColors {
             wavelengths_nm: visible::wavelengths().chain(self.lines.iter().map(|line| line[0])).collect(),
             columns: self.columns().chain(self.lines.iter().map(of_line)).collect(),
@@ -142,11 +142,11 @@ impl Emission {
 
     /// Returns whether two lights look alike apart from a factor, to a part in a million.
     pub fn looks_like(&self, other: &Self) -> bool {
-        self.film_of_xyz == other.film_of_xyz && self.has_shape_of(other)
+        self.xyz_to_film == other.xyz_to_film && self.is_proportional_to(other)
     }
 
     /// Returns whether two spectra are alike apart from a factor, whatever colors are made of them.
-    pub fn has_shape_of(&self, other: &Self) -> bool {
+    pub fn is_proportional_to(&self, other: &Self) -> bool {
         let (a, b) = (self.total(), other.total());
         let same = |x: f64, y: f64| (x / a - y / b).abs() <= 1e-6;
         self.lines.len() == other.lines.len()
@@ -156,7 +156,7 @@ impl Emission {
 }
 
 /// Returns the spectrum of a color on the grid, and the factors on XYZ that make white exactly the film's.
-fn colored(rgb: [f64; 3], space: ColorSpace) -> (Vec<f64>, [f64; 3]) {
+fn spectrum_of_color(rgb: [f64; 3], space: ColorSpace) -> (Vec<f64>, [f64; 3]) {
     let (mut spectrum, correction) = visible::white(space);
     let [r, g, b] = rgb;
     if r == g && g == b {
@@ -176,11 +176,11 @@ fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
     let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return 0.0 };
     let at = |nm: f64| if (first[0]..=last[0]).contains(&nm) { interpolate(samples, nm) } else { 0.0 };
     // A table that is flat over the visible range has its full value in every step of it.
-    let is_whole = |nm: f64| [visible::START_NM, visible::FIRST_NM, visible::LAST_NM].contains(&nm);
-    let ends_at_once = |end: &[f64; 2]| end[1] != 0.0 && !is_whole(end[0]) && (end[0] - wavelength_nm).abs() < 1.0;
-    let is_end = |end: &[f64; 2]| end[0] == wavelength_nm && is_whole(end[0]);
-    let is_of_steps = samples.iter().all(|sample| sample[0].fract() == 0.0);
-    if [first, last].into_iter().any(is_end) || is_of_steps && ![first, last].into_iter().any(ends_at_once) {
+    let is_grid_end = |nm: f64| [visible::START_NM, visible::FIRST_NM, visible::LAST_NM].contains(&nm);
+    let ends_abruptly = |end: &[f64; 2]| end[1] != 0.0 && !is_grid_end(end[0]) && (end[0] - wavelength_nm).abs() < 1.0;
+    let is_end = |end: &[f64; 2]| end[0] == wavelength_nm && is_grid_end(end[0]);
+    let is_on_steps = samples.iter().all(|sample| sample[0].fract() == 0.0);
+    if [first, last].into_iter().any(is_end) || is_on_steps && ![first, last].into_iter().any(ends_abruptly) {
         return at(wavelength_nm);
     }
     let (from, to) = (wavelength_nm - 1.0, wavelength_nm + 1.0);
@@ -188,10 +188,10 @@ fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
     let begin = samples.partition_point(|sample| sample[0] <= from);
     ends.extend(samples[begin..].iter().map(|sample| sample[0]).take_while(|&nm| nm < to));
     ends.sort_by(f64::total_cmp);
-    let weighed = |nm: f64| at(nm) * (1.0 - (nm - wavelength_nm).abs());
+    let hat_weighted = |nm: f64| at(nm) * (1.0 - (nm - wavelength_nm).abs());
     // Simpson's rule is exact: between two ends, both the light and the hat are linear.
     let part = |a: f64, b: f64| {
-        let inside = |t: f64| weighed(a + t * (b - a));
+        let inside = |t: f64| hat_weighted(a + t * (b - a));
         // Evaluated just inside the ends, where an emission may begin or stop abruptly.
         (b - a) / 6.0 * (inside(1e-9) + 4.0 * inside(0.5) + inside(1.0 - 1e-9))
     };

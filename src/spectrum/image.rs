@@ -78,7 +78,7 @@ impl Image {
             Self { width, height, channels, texels, mean: none, brightest: (0, 0.0), most_colorful: [0.0; 3] };
         let (mut sum, mut farthest) = ([0.0; 3], -1.0);
         for at in 0..width * height {
-            let texel = image.at(at);
+            let texel = image.texel_at(at);
             let [low, high] = [texel.into_iter().fold(f32::MAX, f32::min), texel.into_iter().fold(0.0, f32::max)];
             (0..3).for_each(|c| sum[c] += f64::from(texel[c]));
             if high > image.brightest.1 {
@@ -105,11 +105,11 @@ impl Image {
 
     /// Returns a texel, counted from the upper left corner.
     pub fn texel(&self, column: usize, row: usize) -> [f32; 3] {
-        self.at(row * self.width + column)
+        self.texel_at(row * self.width + column)
     }
 
     #[inline]
-    fn at(&self, at: usize) -> [f32; 3] {
+    fn texel_at(&self, at: usize) -> [f32; 3] {
         match (&self.texels, self.channels) {
             (Texels::Bytes(bytes, values), 1) => [values[usize::from(bytes[at])]; 3],
             (Texels::Bytes(bytes, values), _) => {
@@ -122,12 +122,12 @@ impl Image {
     }
 
     /// Interpolates linearly between the centers of texels, at a place in texels from the upper left corner.
-    pub fn linear(&self, place: [f64; 2], [across, down]: [Wrap; 2]) -> [f32; 3] {
+    pub fn bilinear(&self, place: [f64; 2], [across, down]: [Wrap; 2]) -> [f32; 3] {
         let [x, y] = place.map(|x| x - 0.5);
         let (left, above) = (x.floor(), y.floor());
         let (right, below) = ((x - left) as f32, (y - above) as f32);
-        let columns = [0, 1].map(|i| across.entry(left as isize + i, self.width));
-        let rows = [0, 1].map(|i| down.entry(above as isize + i, self.height));
+        let columns = [0, 1].map(|i| across.index(left as isize + i, self.width));
+        let rows = [0, 1].map(|i| down.index(above as isize + i, self.height));
         let [upper, lower] = rows.map(|row| columns.map(|column| self.texel(column, row)));
         std::array::from_fn(|c| {
             let mix = |[a, b]: [[f32; 3]; 2]| a[c] + right * (b[c] - a[c]);
@@ -150,7 +150,7 @@ impl Image {
     /// Returns the texel whose numbers have the largest sum.
     pub fn lightest(&self) -> [f32; 3] {
         let sum = |texel: &[f32; 3]| texel.iter().sum::<f32>();
-        let texels = (0..self.width * self.height).map(|at| self.at(at));
+        let texels = (0..self.width * self.height).map(|at| self.texel_at(at));
         texels.max_by(|a, b| sum(a).total_cmp(&sum(b))).unwrap_or_default()
     }
 
@@ -162,7 +162,7 @@ impl Image {
 
 impl Wrap {
     /// Returns where a place lies in the image, 0 to 1.
-    pub(super) fn place(self, x: f64) -> f64 {
+    pub(super) fn coordinate(self, x: f64) -> f64 {
         match self {
             Self::Repeat => x - x.floor(),
             Self::Clamp => x.clamp(0.0, 1.0),
@@ -174,7 +174,7 @@ impl Wrap {
     }
 
     /// Returns the column or row at a position, which may lie one beyond either end.
-    pub fn entry(self, at: isize, count: usize) -> usize {
+    pub fn index(self, at: isize, count: usize) -> usize {
         match self {
             Self::Repeat => at.rem_euclid(count as isize) as usize,
             Self::Clamp | Self::Mirror => at.clamp(0, count as isize - 1) as usize,

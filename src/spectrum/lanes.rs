@@ -23,7 +23,7 @@ impl LaneSet {
 
     /// Returns the only lane; `None` if there are several or none.
     #[inline(always)]
-    pub fn only(self) -> Option<usize> {
+    pub fn single_lane(self) -> Option<usize> {
         self.0.is_power_of_two().then(|| self.0.trailing_zeros() as usize)
     }
 }
@@ -51,13 +51,13 @@ impl<const N: usize> Lanes<N> {
 
     /// Returns the lanes that are not 0.
     #[inline(always)]
-    pub fn not_zero(&self) -> LaneSet {
+    pub fn nonzero(&self) -> LaneSet {
         const { assert!(N <= 32) };
         LaneSet((0..N).rev().fold(0, |bits, i| bits << 1 | u32::from(self.0[i] != 0.0)))
     }
 
     /// Returns 1 in the given lanes, and 0 in the others.
-    pub fn one_in(lanes: LaneSet) -> Self {
+    pub fn mask_of(lanes: LaneSet) -> Self {
         Self::from_fn(|i| (lanes.0 >> i & 1) as f32)
     }
 

@@ -46,7 +46,7 @@ impl Wavelength {
 /// Returns the bin of each entry of the fine grid and the probability of each bin, from those of steps and lines.
 fn bins(probabilities: impl Iterator<Item = f64>, parts: f64) -> (Vec<u32>, Vec<f64>) {
     let steps = COUNT - 1;
-    let widest = ((visible::LAST_NM - visible::FIRST_NM) / parts).max(1.0);
+    let max_width = ((visible::LAST_NM - visible::FIRST_NM) / parts).max(1.0);
     let (mut bins, mut chances, mut width) = (Vec::new(), vec![0.0], 0.0);
     for (entry, probability) in probabilities.enumerate() {
         if entry == steps {
@@ -54,7 +54,7 @@ fn bins(probabilities: impl Iterator<Item = f64>, parts: f64) -> (Vec<u32>, Vec<
             bins.push(chances.len() as u32 - 1);
         }
         let last = chances.len() - 1;
-        if entry >= steps || (width > 0.0 && (width + 1.0 > widest || (chances[last] + probability) * parts > 1.0)) {
+        if entry >= steps || (width > 0.0 && (width + 1.0 > max_width || (chances[last] + probability) * parts > 1.0)) {
             chances.push(0.0);
             width = 0.0;
         }
@@ -83,15 +83,15 @@ impl<const N: usize> Matching<N> {
             None => between(nm),
         };
         let (bins, chances) = bins(mixture.probabilities(), parts);
-        Self { weights: basis.fine(between, line), bins, chances }
+        Self { weights: basis.on_fine_grid(between, line), bins, chances }
     }
 
-    /// Returns whether heroes carry the light that arrives in `lanes`. If so, calls `found` with the lane, the
+    /// Returns whether heroes carry the light that arrives in `lanes`. If so, calls `visit` with the lane, the
     /// wavelength and the weight of each.
-    pub fn alone(draw: &Draw<N>, lanes: Lanes<N>, parted: bool, mut found: impl FnMut(usize, Wavelength, f64)) -> bool {
-        let Some(heroes) = draw.carrying(&lanes, parted) else { return false };
+    pub fn alone(draw: &Draw<N>, lanes: Lanes<N>, parted: bool, mut visit: impl FnMut(usize, Wavelength, f64)) -> bool {
+        let Some(heroes) = draw.carrying_heroes(&lanes, parted) else { return false };
         for (lane, hero, weight) in heroes.filter(|(.., weight)| *weight != 0.0) {
-            found(lane, Wavelength { hero: *hero }, weight);
+            visit(lane, Wavelength { hero: *hero }, weight);
         }
         true
     }
@@ -111,13 +111,13 @@ impl<const N: usize> Matching<N> {
     }
 
     /// Returns the light of the heroes that match a wavelength.
-    pub fn shared(&self, draw: &Draw<N>, wavelength: &Wavelength, lanes: Lanes<N>, parted: bool) -> f64 {
+    pub fn matching_light(&self, draw: &Draw<N>, wavelength: &Wavelength, lanes: Lanes<N>, parted: bool) -> f64 {
         let bin = self.bins[wavelength.hero.below];
         let same = |hero: &Hero| self.bins[hero.below] == bin;
         let heroes = draw.heroes().filter(|(_, hero)| same(hero));
-        let held: f64 = heroes.map(|(lane, _)| f64::from(lanes[lane])).sum();
+        let light_sum: f64 = heroes.map(|(lane, _)| f64::from(lanes[lane])).sum();
         let mean = draw.hero_factor(parted).unwrap_or(0.0) / draw.heroes().count() as f64;
-        held * mean / self.chances[bin as usize]
+        light_sum * mean / self.chances[bin as usize]
     }
 
     fn between(&self, hero: &Hero, lanes: Lanes<N>) -> f32 {

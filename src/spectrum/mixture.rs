@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::draw::Hero;
-use super::visible::{self, COUNT, ULTRAVIOLET};
+use super::visible::{self, COUNT, ULTRAVIOLET_COUNT};
 use super::{Emission, Excited, WavelengthBands};
 use crate::math::Distribution;
 
@@ -17,7 +17,7 @@ pub(super) struct Mixture {
 }
 
 /// Share of wavelengths drawn by what lights emit. The others are drawn by what the eye sees of a flat spectrum.
-const BY_LIGHT: f64 = 0.9;
+const LIGHT_SHARE: f64 = 0.9;
 
 impl Mixture {
     /// Mixes nine tenths of light times color matching functions, with an equal share for each different light, and one
@@ -36,17 +36,17 @@ impl Mixture {
                 probabilities.iter_mut().zip(part).for_each(|(sum, x)| *sum += share * x / total);
             }
         };
-        let mut even = lights.is_empty();
+        let mut has_spectrum = lights.is_empty();
         for light in lights {
-            let density = seen(light);
-            even |= density.iter().any(|&x| x > 0.0);
-            add(BY_LIGHT / lights.len() as f64, &density, &|nm| {
+            let density = seen_spectrum(light);
+            has_spectrum |= density.iter().any(|&x| x > 0.0);
+            add(LIGHT_SHARE / lights.len() as f64, &density, &|nm| {
                 let here = light.lines().iter().filter(|line| line[0] == nm);
                 here.map(|line| line[1] * visible::color_matching(nm).iter().sum::<f64>()).sum()
             });
         }
-        if even {
-            add(1.0 - BY_LIGHT, &eye().collect::<Vec<_>>(), &|_| 0.0);
+        if has_spectrum {
+            add(1.0 - LIGHT_SHARE, &eye_sensitivity().collect::<Vec<_>>(), &|_| 0.0);
         }
         Self { entries: Distribution::new(probabilities), lines }
     }
@@ -54,7 +54,7 @@ impl Mixture {
     /// Draws a third of the wavelengths evenly where lights shine within the bands of a spectral image, because the eye
     /// sees hardly anything at both ends, and the others as before. If all light is in ideal lines, only these are
     /// drawn.
-    pub(super) fn showing(&self, bands: &WavelengthBands, lights: &[Emission]) -> Self {
+    pub(super) fn spread_over_bands(&self, bands: &WavelengthBands, lights: &[Emission]) -> Self {
         let is_lit = |step: usize| lights.iter().any(|light| light.spectrum()[step..step + 2].iter().any(|&x| x > 0.0));
         let is_shown = |step: usize| bands.of(visible::START_NM + step as f64 + 0.5).is_some();
         let shown: Vec<usize> = (0..COUNT - 1).filter(|&step| is_shown(step) && is_lit(step)).collect();
@@ -65,7 +65,7 @@ impl Mixture {
 
     /// Draws two fifths of the wavelengths as before, two fifths by what excites dyes, and the others by what the eye
     /// sees of the dyes' emission. Under lines alone, nothing else would be drawn where dyes emit.
-    pub(super) fn exciting(&self, excitations: &[Excited], shining: &[Emission]) -> Self {
+    pub(super) fn for_dyes(&self, excitations: &[Excited], shining: &[Emission]) -> Self {
         let mut weights: Vec<f64> = self.probabilities().collect();
         let mut add = |part: Vec<f64>, share: f64, of: usize| {
             let scale = share / (part.iter().sum::<f64>() * of as f64);
@@ -73,7 +73,7 @@ impl Mixture {
                 weights.iter_mut().zip(part).for_each(|(weight, x)| *weight += scale * x);
             }
         };
-        shining.iter().for_each(|dye| add(visible_steps(&seen(dye)), 0.5, shining.len()));
+        shining.iter().for_each(|dye| add(visible_steps(&seen_spectrum(dye)), 0.5, shining.len()));
         for excited in excitations {
             let mut part = steps(&excited.smooth);
             part.extend(self.lines.iter().map(|&nm| excited.by_line(nm)));
@@ -112,13 +112,13 @@ impl Mixture {
 }
 
 /// Returns what the eye sees of a flat spectrum at each wavelength of the grid.
-fn eye() -> impl Iterator<Item = f64> {
+fn eye_sensitivity() -> impl Iterator<Item = f64> {
     visible::observer().map(|cmf| cmf.iter().sum())
 }
 
 /// Returns what the eye sees of a light at each wavelength of the grid.
-fn seen(light: &Emission) -> Vec<f64> {
-    light.spectrum().iter().zip(eye()).map(|(power, eye)| power * eye).collect()
+fn seen_spectrum(light: &Emission) -> Vec<f64> {
+    light.spectrum().iter().zip(eye_sensitivity()).map(|(power, eye_sensitivity)| power * eye_sensitivity).collect()
 }
 
 /// Returns the means of a density over the steps between its wavelengths.
@@ -129,6 +129,6 @@ fn steps(density: &[f64]) -> Vec<f64> {
 /// Returns the means of a density over the steps that the eye sees, which begin abruptly, and 0 over the others.
 fn visible_steps(density: &[f64]) -> Vec<f64> {
     let mut steps = steps(density);
-    steps[..ULTRAVIOLET].fill(0.0);
+    steps[..ULTRAVIOLET_COUNT].fill(0.0);
     steps
 }

@@ -30,17 +30,17 @@ pub mod visible;
 mod wavelength_bands;
 mod waves;
 
-pub use advice::{imitation, provenance, reach, reach_of_absorption};
+pub use advice::{absorption_range_warning, imitation_warning, index_range_warning, index_source};
 pub use band_response::BandResponse;
 pub use bands::normal_reflectance;
 pub use basis::Basis;
 pub use color::{
-    ColorSpace, IDENTITY, Matrix, Primaries, apply, decode_srgb, encode_srgb, matrix_of_file, space_of_file,
+    ColorSpace, IDENTITY, Matrix, Primaries, apply, decode_srgb, describe_file_colors, encode_srgb, file_to_rec709,
 };
-pub use curve::{Curve, CurveKind, Named, cauchy_through, sellmeier_squared};
-pub use distinct::Distinct;
+pub use curve::{CatalogEntry, Curve, CurveKind, cauchy_from_abbe, sellmeier_squared};
+pub use distinct::CurveCache;
 pub use draw::Draw;
-pub use dye::{Dye, EnergyExcess, Excitable, Excited};
+pub use dye::{Dye, EnergyExcess, Excited, PreparedDye};
 pub use emission::{Emission, FilmColors};
 pub use image::{Image, Wrap};
 pub use lanes::{LaneSet, Lanes};

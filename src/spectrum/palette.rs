@@ -36,7 +36,7 @@ pub(super) fn palette(tabulate: impl Fn(&Curve) -> Table) -> Vec<Table> {
 
 /// Returns the factor on white that has a color. If `bounded`, no lane exceeds 1 where no number of the color does.
 #[inline]
-pub(super) fn filter<const N: usize>(
+pub(super) fn tint_factor<const N: usize>(
     palette: &[Table],
     read: impl Fn(&Table) -> Lanes<N>,
     color: [f32; 3],

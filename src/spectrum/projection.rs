@@ -34,15 +34,15 @@ pub(super) struct Part {
 }
 
 /// Weight of what no measure sees, relative to all that they see, spread evenly over the lanes' wavelengths.
-const UNSEEN: f64 = 1e-3;
+const UNSEEN_WEIGHT: f64 = 1e-3;
 /// Weight of all wavelengths of the bands, spread evenly over them, if a spectral image is wanted. With more, edges in
 /// spectra hardly come closer; with 1e-3 to 1, predicted colors of five gallery scenes are equally close.
-const SHOWN: f64 = 1.0;
+const SHOWN_WEIGHT: f64 = 1.0;
 /// Weight of a measure relative to that of all wavelengths, if it must be matched exactly.
-const EXACT: f64 = 1e5;
+const EXACT_WEIGHT: f64 = 1e5;
 /// Weight of a measure if there are too many to match all exactly. Of weights from 0 to 1e5, it is close to the best
 /// for one, two and four reflections by 123 measured colors under four lights in 8 to 32 lanes.
-const BALANCED: f64 = 10.0;
+const BALANCED_WEIGHT: f64 = 10.0;
 
 impl Projection {
     /// Creates the projection. `parts` holds the wavelengths of the visible grid, then ideal lines; `smooth` is the
@@ -50,24 +50,25 @@ impl Projection {
     /// limits of the bands that are wanted too.
     pub(super) fn new(parts: &[Part], smooth: usize, ends: [f64; 2], shown: Option<[f64; 2]>) -> Self {
         let (lanes, measures) = (parts[0].shares.len(), parts[0].worth.len());
-        let each = 1.0 / measures as f64;
+        let measure_share = 1.0 / measures as f64;
         // Every exact measure uses up one of the lanes' numbers. Half of the numbers are left to come close.
-        let kept = each * if 2 * measures <= smooth { EXACT } else { BALANCED };
+        let measure_weight = measure_share * if 2 * measures <= smooth { EXACT_WEIGHT } else { BALANCED_WEIGHT };
         let even = |weight: f64, [first, last]: [f64; 2]| {
             move |at_nm: f64| if (first..=last).contains(&at_nm) { weight / (last - first + 1.0) } else { 0.0 }
         };
-        let (unseen, shown) = (even(UNSEEN, ends), shown.map(|shown| even(SHOWN, shown)));
-        let of_line = UNSEEN / (ends[1] - ends[0] + 1.0);
+        let (unseen, shown) = (even(UNSEEN_WEIGHT, ends), shown.map(|shown| even(SHOWN_WEIGHT, shown)));
+        let of_line = UNSEEN_WEIGHT / (ends[1] - ends[0] + 1.0);
         let mut taken = vec![vec![0.0; parts.len()]; lanes];
         for (number, part) in parts.iter().enumerate() {
-            let seen = each * part.worth.iter().map(|x| x.abs()).sum::<f64>();
+            let seen = measure_share * part.worth.iter().map(|x| x.abs()).sum::<f64>();
             let smooth = || unseen(part.at_nm) + shown.as_ref().map_or(0.0, |shown| shown(part.at_nm));
-            let beside = if number < COUNT { smooth() } else { of_line };
-            taken.iter_mut().zip(&part.shares).for_each(|(lane, share)| lane[number] = (seen + beside) * share);
+            let background = if number < COUNT { smooth() } else { of_line };
+            taken.iter_mut().zip(&part.shares).for_each(|(lane, share)| lane[number] = (seen + background) * share);
         }
         for measure in 0..measures {
             for (lane, taken) in taken.iter_mut().enumerate() {
-                let weight = kept * parts.iter().map(|part| part.worth[measure] * part.shares[lane]).sum::<f64>();
+                let weight =
+                    measure_weight * parts.iter().map(|part| part.worth[measure] * part.shares[lane]).sum::<f64>();
                 taken.iter_mut().zip(parts).for_each(|(taken, part)| *taken += weight * part.worth[measure]);
             }
         }
@@ -86,23 +87,23 @@ impl Projection {
         }
         let range = [values.iter().copied().fold(0.0, f64::min), values.iter().copied().fold(1.0, f64::max)];
         let taken = self.taken.iter().map(|taken| taken.iter().zip(&values).map(|(a, b)| a * b).sum());
-        self.within(range, taken.collect())
+        self.solve_within(range, taken.collect())
     }
 
     /// Returns the closest numbers within a range. Numbers beyond it are held at its end, and the others make up for
     /// what that misses.
-    fn within(&self, [low, high]: [f64; 2], taken: Vec<f64>) -> Vec<f64> {
+    fn solve_within(&self, [low, high]: [f64; 2], taken: Vec<f64>) -> Vec<f64> {
         let mut held: Vec<Option<f64>> = vec![None; taken.len()];
         loop {
             let numbers = self.solve(&taken, &held);
-            let mut beyond = false;
+            let mut exceeds = false;
             for (held, &number) in held.iter_mut().zip(&numbers) {
                 if held.is_none() && !(low..=high).contains(&number) {
                     *held = Some(number.clamp(low, high));
-                    beyond = true;
+                    exceeds = true;
                 }
             }
-            if !beyond {
+            if !exceeds {
                 return numbers;
             }
         }
@@ -111,22 +112,22 @@ impl Projection {
     /// Solves for the closest numbers, of which some are held, by Cholesky factorization of the normal equations.
     fn solve(&self, taken: &[f64], held: &[Option<f64>]) -> Vec<f64> {
         let free: Vec<usize> = (0..taken.len()).filter(|&lane| held[lane].is_none()).collect();
-        let of_held = |lane: usize| held.iter().zip(&self.gram[lane]).map(|(x, g)| x.unwrap_or(0.0) * g).sum::<f64>();
+        let held_sum = |lane: usize| held.iter().zip(&self.gram[lane]).map(|(x, g)| x.unwrap_or(0.0) * g).sum::<f64>();
         let mut numbers: Vec<f64> = held.iter().map(|x| x.unwrap_or(0.0)).collect();
         let mut factor = vec![vec![0.0; free.len()]; free.len()];
-        let mut right = vec![0.0; free.len()];
+        let mut rhs = vec![0.0; free.len()];
         for i in 0..free.len() {
             for j in 0..=i {
-                let known: f64 = (0..j).map(|k| factor[i][k] * factor[j][k]).sum();
-                let left = self.gram[free[i]][free[j]] - known;
+                let partial_sum: f64 = (0..j).map(|k| factor[i][k] * factor[j][k]).sum();
+                let left = self.gram[free[i]][free[j]] - partial_sum;
                 factor[i][j] = if i == j { left.sqrt() } else { left / factor[j][j] };
             }
-            let known: f64 = (0..i).map(|k| factor[i][k] * right[k]).sum();
-            right[i] = (taken[free[i]] - of_held(free[i]) - known) / factor[i][i];
+            let partial_sum: f64 = (0..i).map(|k| factor[i][k] * rhs[k]).sum();
+            rhs[i] = (taken[free[i]] - held_sum(free[i]) - partial_sum) / factor[i][i];
         }
         for i in (0..free.len()).rev() {
-            let known: f64 = (i + 1..free.len()).map(|k| factor[k][i] * numbers[free[k]]).sum();
-            numbers[free[i]] = (right[i] - known) / factor[i][i];
+            let partial_sum: f64 = (i + 1..free.len()).map(|k| factor[k][i] * numbers[free[k]]).sum();
+            numbers[free[i]] = (rhs[i] - partial_sum) / factor[i][i];
         }
         numbers
     }

@@ -25,8 +25,8 @@ impl Response {
     }
 
     /// Returns the film's red, green and blue for light that arrives in `lanes`, which may have `parted` on the way.
-    pub fn sensor<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>, parted: bool) -> [f64; 3] {
-        if let Some(heroes) = draw.carrying(&lanes, parted) {
+    pub fn film_rgb<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>, parted: bool) -> [f64; 3] {
+        if let Some(heroes) = draw.carrying_heroes(&lanes, parted) {
             let weighted = heroes.filter(|(.., weight)| *weight != 0.0);
             return weighted_sum(weighted.map(|(_, hero, weight)| (weight, self.hero(hero))));
         }

@@ -28,7 +28,7 @@ pub struct Table {
 pub(super) struct Pattern {
     pub(super) kind: PatternKind,
     /// Upper limit of the product, against rounding: 1 for a reflectance or a transmittance.
-    pub(super) most: f32,
+    pub(super) limit: f32,
     /// Mean brightness of the factor over the image, where brightness is the mean of red, green and blue.
     pub(super) mean: f64,
 }
@@ -71,7 +71,7 @@ impl Table {
     }
 
     /// Returns the table with a pattern that varies over the surface.
-    pub(super) fn varied(self, pattern: Pattern) -> Self {
+    pub(super) fn with_pattern(self, pattern: Pattern) -> Self {
         Self { pattern: Some(Box::new(pattern)), ..self }
     }
 
@@ -132,7 +132,7 @@ impl Table {
     }
 
     /// Interpolates between two entries of the fine grid.
-    pub(super) fn between(&self, below: usize, fraction: f64) -> f64 {
+    pub(super) fn interpolate(&self, below: usize, fraction: f64) -> f64 {
         let (a, b) = (self.fine[below], self.fine[below + 1]);
         a + fraction * (b - a)
     }

@@ -76,12 +76,12 @@ impl Texture {
     pub fn color(&self, [u, v]: [f64; 2]) -> [f32; 3] {
         let Placement { repeat, wrap, filter } = self.placement;
         let (width, height) = (self.image.width(), self.image.height());
-        let across = wrap.place(u * repeat[0]) * width as f64;
-        let down = (1.0 - wrap.place(v * repeat[1])) * height as f64;
+        let across = wrap.coordinate(u * repeat[0]) * width as f64;
+        let down = (1.0 - wrap.coordinate(v * repeat[1])) * height as f64;
         if filter == TexelFilter::Nearest {
             return self.image.texel((across as usize).min(width - 1), (down as usize).min(height - 1));
         }
-        self.image.linear([across, down], [wrap; 2])
+        self.image.bilinear([across, down], [wrap; 2])
     }
 
     /// Returns the derivatives of the image's heights by u and v. The height of a color is the mean of its numbers.
@@ -101,8 +101,8 @@ impl Texture {
         for (j, row) in down.entries.into_iter().enumerate() {
             for (i, column) in across.entries.into_iter().enumerate() {
                 let over = level(column, row) - middle;
-                slope[0] += across.slopes[i] * down.shares[j] * over;
-                slope[1] += across.shares[i] * down.slopes[j] * over;
+                slope[0] += across.slopes[i] * down.weights[j] * over;
+                slope[1] += across.weights[i] * down.slopes[j] * over;
             }
         }
         [slope[0] * repeat[0], slope[1] * repeat[1]]
@@ -111,7 +111,7 @@ impl Texture {
 
 /// Returns which of two squares of a checkerboard lies at a place. `repeat` is the number of squares per unit, of which
 /// the first begins at (0, 0).
-pub(super) fn square(repeat: [f64; 2], uv: [f64; 2]) -> usize {
+pub(super) fn checker_cell(repeat: [f64; 2], uv: [f64; 2]) -> usize {
     let [x, y] = [0, 1].map(|i| (uv[i] * repeat[i]).floor().rem_euclid(2.0));
     usize::from(x != y)
 }
@@ -120,7 +120,7 @@ pub(super) fn square(repeat: [f64; 2], uv: [f64; 2]) -> usize {
 struct Stencil {
     entries: [usize; 3],
     /// Weight of each texel in the height.
-    shares: [f64; 3],
+    weights: [f64; 3],
     /// Weight of each texel in the derivative by the coordinate.
     slopes: [f64; 3],
 }
@@ -128,7 +128,7 @@ struct Stencil {
 impl Stencil {
     /// Creates the stencil of a place, in units of the image. With `from_top`, entries count against the coordinate.
     fn new(wrap: Wrap, place: f64, count: usize, from_top: bool) -> Self {
-        let inside = wrap.place(place);
+        let inside = wrap.coordinate(place);
         let backward = wrap == Wrap::Mirror && (place - 2.0 * (0.5 * place).floor()) > 1.0;
         let along = if from_top { 1.0 - inside } else { inside } * count as f64;
         let middle = (along.floor() as usize).min(count - 1);
@@ -136,8 +136,8 @@ impl Stencil {
         let (before, behind) = (0.5 - t, 0.5 + t);
         let unit = if from_top == backward { count as f64 } else { -(count as f64) };
         Self {
-            entries: [-1, 0, 1].map(|step| wrap.entry(middle as isize + step, count)),
-            shares: [0.5 * before * before, 0.75 - t * t, 0.5 * behind * behind],
+            entries: [-1, 0, 1].map(|step| wrap.index(middle as isize + step, count)),
+            weights: [0.5 * before * before, 0.75 - t * t, 0.5 * behind * behind],
             slopes: [-before * unit, -2.0 * t * unit, behind * unit],
         }
     }
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_its_edges_an_image_goes_on_as_it_is_told() {
+    fn beyond_its_edges_an_image_continues_as_its_wrap_says() {
         let at = |wrap, filter, u: f64| texture(wrap, filter, 1.0).color([u, 0.75])[0];
         let nearest = |wrap, u| at(wrap, TexelFilter::Nearest, u);
         assert_eq!([-0.9, -0.1, 1.1, 7.5].map(|u| nearest(Wrap::Repeat, u)), [0.0, 2.0, 0.0, 1.0]);
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn the_image_is_continuous_but_for_its_nearest_texels() {
+    fn a_linearly_filtered_image_is_continuous() {
         for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
             let texture = texture(wrap, TexelFilter::Linear, 1.5);
             // No two neighbors differ by more than 12, and 3 x 1.5 of them fill a unit.
@@ -215,13 +215,13 @@ mod tests {
         }
     }
 
-    fn of_heights(width: usize, heights: Vec<f32>, wrap: Wrap, repeat: [f64; 2]) -> Texture {
+    fn height_texture(width: usize, heights: Vec<f32>, wrap: Wrap, repeat: [f64; 2]) -> Texture {
         let image = Arc::new(Image::of_floats(width, 1, heights));
         Texture { image, placement: Placement { repeat, wrap, filter: TexelFilter::Linear } }
     }
 
     #[test]
-    fn an_even_slope_is_found_as_it_is_u_to_the_right_and_v_up() {
+    fn an_even_slope_is_exact_with_u_to_the_right_and_v_up() {
         // 8 x 4 texels rise by 1 per texel to the right and by 0.25 per row upward.
         let heights: Vec<f32> = (0..32_u8).map(|i| f32::from(i % 8) - 0.25 * f32::from(i / 8)).collect();
         for (wrap, uv, sign) in [
@@ -230,11 +230,11 @@ mod tests {
             (Wrap::Mirror, [1.6, -0.52], -1.0),
             (Wrap::Mirror, [-1.6, 2.52], 1.0),
         ] {
-            let texture = of_heights(8, heights.clone(), wrap, [1.0, 1.0]);
+            let texture = height_texture(8, heights.clone(), wrap, [1.0, 1.0]);
             let [du, dv] = texture.slope(uv);
             assert!((du - 8.0 * sign).abs() < 1e-12 && (dv - sign).abs() < 1e-12, "{wrap:?} {uv:?}: {du} {dv}");
         }
-        let [du, dv] = of_heights(8, heights.clone(), Wrap::Repeat, [3.0, 0.5]).slope([0.17, 1.04]);
+        let [du, dv] = height_texture(8, heights.clone(), Wrap::Repeat, [3.0, 0.5]).slope([0.17, 1.04]);
         assert!((du - 24.0).abs() < 1e-12 && (dv - 0.5).abs() < 1e-12, "{du} {dv}");
     }
 
@@ -242,7 +242,7 @@ mod tests {
     fn slopes_are_those_of_one_surface_and_do_not_jump() {
         let heights: Vec<f32> = (0..35_u32).map(|i| ((i * 7919 + 13) % 101) as f32 / 101.0).collect();
         for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
-            let texture = of_heights(7, heights.clone(), wrap, [1.5, 1.0]);
+            let texture = height_texture(7, heights.clone(), wrap, [1.5, 1.0]);
             // Around a loop one comes back to the same height, and a way is as high as its mirror image is low.
             let mut last = texture.slope([-1.0, -1.0]);
             let mut around = 0.0;
@@ -268,7 +268,7 @@ mod tests {
     fn every_place_has_a_finite_slope() {
         for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
             for heights in [vec![1.0], vec![0.0, 1.0], vec![0.0, 1.0, 2.0, 3.0]] {
-                let texture = of_heights(1, heights, wrap, [1.0; 2]);
+                let texture = height_texture(1, heights, wrap, [1.0; 2]);
                 for u in [-1e300, 1e300, -1e-300, 1e16, -5e-17, f64::MAX, 0.0, 1.0, -1.0, 0.5] {
                     let slope = texture.slope([u, -u]);
                     assert!(slope.iter().all(|x| x.abs() <= 16.0), "{wrap:?} at {u}: {slope:?}");

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::color::{ColorSpace, Matrix, adaptation, apply, inverse, product};
 use super::data;
-use super::visible::{self, ULTRAVIOLET};
+use super::visible::{self, ULTRAVIOLET_COUNT};
 
 /// A spectrum S(w) = 1/2 + x / (2 sqrt(1 + x^2)), x = (a t + b) t + c, where t runs from 0 at 360 to 1 at 830 nm.
 ///
@@ -57,24 +57,25 @@ impl PartialEq for Upsampler {
 }
 
 /// Maximum number of colors in the cache. They take 8 MB.
-const MOST_FOUND: usize = 1 << 16;
+const MAX_CACHED: usize = 1 << 16;
 
 /// Largest residual of a fit that is accepted, in linear Rec.709.
-const CLOSE: f64 = 1e-4;
+const MAX_RESIDUAL: f64 = 1e-4;
 
 impl Upsampler {
     /// Returns the upsampler of a film: a reflectance of 1 has the color (1, 1, 1) under its white. All upsamplers of
     /// one space share a cache.
     pub fn new(space: ColorSpace) -> Self {
-        static MADE: [OnceLock<Upsampler>; ColorSpace::ALL.len()] = [const { OnceLock::new() }; ColorSpace::ALL.len()];
-        MADE[space as usize].get_or_init(|| Self::made(space)).clone()
+        static UPSAMPLERS: [OnceLock<Upsampler>; ColorSpace::ALL.len()] =
+            [const { OnceLock::new() }; ColorSpace::ALL.len()];
+        UPSAMPLERS[space as usize].get_or_init(|| Self::build(space)).clone()
     }
 
-    fn made(space: ColorSpace) -> Self {
+    fn build(space: ColorSpace) -> Self {
         let (spectrum, correction) = visible::white(space);
         let adapted = adaptation(space.white(), ColorSpace::Rec709.white());
-        let to_rec709 = product(&ColorSpace::Rec709.of_xyz(), &adapted);
-        let steps = spectrum.iter().skip(ULTRAVIOLET).zip(data::color_matching());
+        let to_rec709 = product(&ColorSpace::Rec709.matrix_from_xyz(), &adapted);
+        let steps = spectrum.iter().skip(ULTRAVIOLET_COUNT).zip(data::color_matching());
         let color = |(power, cmf): (&f64, &[f64; 3])| std::array::from_fn(|c| power * cmf[c] * correction[c]);
         Self { steps: steps.map(|step| apply(&to_rec709, color(step))).collect(), found: Arc::default() }
     }
@@ -97,7 +98,7 @@ impl Upsampler {
         // The cache is not locked here: others may search meanwhile, even for the same color.
         let sigmoid = self.search(rgb, gray);
         let mut found = self.found();
-        if found.len() >= MOST_FOUND {
+        if found.len() >= MAX_CACHED {
             found.clear();
         }
         found.insert(bits, sigmoid);
@@ -106,19 +107,19 @@ impl Upsampler {
 
     /// Searches for the spectrum of a color that is not gray. `gray` is its mean.
     fn search(&self, rgb: [f64; 3], gray: f64) -> Sigmoid {
-        let toward = |saturation: f64| rgb.map(|x| gray + saturation * (x - gray));
-        let solved = |saturation: f64| {
-            let (coefficients, residual) = self.solve(toward(saturation), gray);
-            (residual < CLOSE).then_some(Sigmoid { coefficients, saturation })
+        let desaturated = |saturation: f64| rgb.map(|x| gray + saturation * (x - gray));
+        let try_solve = |saturation: f64| {
+            let (coefficients, residual) = self.solve(desaturated(saturation), gray);
+            (residual < MAX_RESIDUAL).then_some(Sigmoid { coefficients, saturation })
         };
-        if let Some(sigmoid) = solved(1.0) {
+        if let Some(sigmoid) = try_solve(1.0) {
             return sigmoid;
         }
         let (mut low, mut high) = (0.0, 1.0);
         let mut best = Sigmoid { coefficients: [0.0, 0.0, inverse_sigmoid(gray)], saturation: 0.0 };
         for _ in 0..12 {
             let middle = 0.5 * (low + high);
-            match solved(middle) {
+            match try_solve(middle) {
                 Some(sigmoid) => (best, low) = (sigmoid, middle),
                 None => high = middle,
             }
@@ -129,35 +130,35 @@ impl Upsampler {
     /// Solves by damped Gauss-Newton (Levenberg 1944), from gray outward: saturated colors start near their solution.
     fn solve(&self, target: [f64; 3], gray: f64) -> ([f64; 3], f64) {
         let mut k = [0.0, 0.0, inverse_sigmoid(gray.clamp(0.002, 0.998))];
-        let mut worst = f64::INFINITY;
+        let mut max_residual = f64::INFINITY;
         for part in [0.5, 0.9, 1.0] {
             let goal = target.map(|x| gray + part * (x - gray));
-            let (mut residual, mut slopes) = self.evaluate(k, goal);
+            let (mut residual, mut jacobian) = self.evaluate(k, goal);
             let mut error = squared(residual);
             let mut damping = 1e-3;
             for _ in 0..60 {
                 if error < if part == 1.0 { 1e-20 } else { 1e-6 } {
                     break;
                 }
-                let step = gauss_newton_step(&slopes, residual, damping);
+                let step = gauss_newton_step(&jacobian, residual, damping);
                 let next: [f64; 3] = std::array::from_fn(|i| k[i] - step[i]);
-                let (next_residual, next_slopes) = self.evaluate(next, goal);
+                let (next_residual, next_jacobian) = self.evaluate(next, goal);
                 let next_error = squared(next_residual);
                 if next_error < error {
-                    (k, residual, slopes, error) = (next, next_residual, next_slopes, next_error);
+                    (k, residual, jacobian, error) = (next, next_residual, next_jacobian, next_error);
                     damping *= 0.2;
                 } else {
                     damping = (damping * 4.0).min(1e8);
                 }
             }
-            worst = residual.iter().fold(0.0, |worst: f64, r| worst.max(r.abs()));
+            max_residual = residual.iter().fold(0.0, |max_residual: f64, r| max_residual.max(r.abs()));
         }
-        (k, worst)
+        (k, max_residual)
     }
 
     /// Returns the color minus the goal, and its derivatives by the coefficients.
     fn evaluate(&self, [a, b, c]: [f64; 3], goal: [f64; 3]) -> ([f64; 3], Matrix) {
-        let (mut residual, mut slopes) = (goal.map(|x| -x), [[0.0; 3]; 3]);
+        let (mut residual, mut jacobian) = (goal.map(|x| -x), [[0.0; 3]; 3]);
         for (i, step) in self.steps.iter().enumerate() {
             let t = i as f64 / (visible::LAST_NM - visible::FIRST_NM);
             let x = (a * t + b) * t + c;
@@ -166,10 +167,10 @@ impl Upsampler {
             for channel in 0..3 {
                 residual[channel] += step[channel] * value;
                 let weight = step[channel] * slope;
-                (0..3).for_each(|power| slopes[channel][power] += weight * [t * t, t, 1.0][power]);
+                (0..3).for_each(|power| jacobian[channel][power] += weight * [t * t, t, 1.0][power]);
             }
         }
-        (residual, slopes)
+        (residual, jacobian)
     }
 }
 
@@ -178,10 +179,10 @@ fn squared(v: [f64; 3]) -> f64 {
 }
 
 /// Solves (J^T J + damping) s = J^T r for the step s.
-fn gauss_newton_step(slopes: &Matrix, residual: [f64; 3], damping: f64) -> [f64; 3] {
+fn gauss_newton_step(jacobian: &Matrix, residual: [f64; 3], damping: f64) -> [f64; 3] {
     let mut normal: Matrix =
-        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|c| slopes[c][i] * slopes[c][j]).sum()));
-    let right: [f64; 3] = std::array::from_fn(|i| (0..3).map(|c| slopes[c][i] * residual[c]).sum());
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|c| jacobian[c][i] * jacobian[c][j]).sum()));
+    let right: [f64; 3] = std::array::from_fn(|i| (0..3).map(|c| jacobian[c][i] * residual[c]).sum());
     let trace: f64 = (0..3).map(|i| normal[i][i]).sum();
     (0..3).for_each(|i| normal[i][i] += damping * trace + 1e-14);
     apply(&inverse(&normal), right)
@@ -198,7 +199,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_color_is_looked_for_once_whoever_asks() {
+    fn a_color_is_fitted_once_for_all_upsamplers_of_a_space() {
         let (space, rgb) = (ColorSpace::Aces2065, [0.9, 0.1, 0.02]);
         let found = Upsampler::new(space).fit(rgb);
         // A new search would not find this value.

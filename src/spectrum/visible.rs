@@ -13,7 +13,7 @@ pub const LAST_NM: f64 = 830.0;
 /// Number of wavelengths on the grid.
 pub const COUNT: usize = 531;
 /// Number of wavelengths on the grid below the visible range.
-pub const ULTRAVIOLET: usize = 60;
+pub const ULTRAVIOLET_COUNT: usize = 60;
 
 /// Luminous efficacy of radiation at the peak of photopic vision, in lm/W: K_m of CIE 018:2019, *The Basis of Physical
 /// Photometry*.
@@ -25,7 +25,7 @@ pub fn wavelengths() -> impl Iterator<Item = f64> {
 }
 
 /// Returns where a wavelength lies on the grid: the entry at or below it, and the fraction of the step to the next one.
-pub fn place(wavelength_nm: f64) -> (usize, f64) {
+pub fn grid_position(wavelength_nm: f64) -> (usize, f64) {
     let at = (wavelength_nm - START_NM).clamp(0.0, (COUNT - 1) as f64);
     let below = (at as usize).min(COUNT - 2);
     (below, at - below as f64)
@@ -33,7 +33,7 @@ pub fn place(wavelength_nm: f64) -> (usize, f64) {
 
 /// Interpolates a function that is known on the grid, linearly within a step.
 pub(super) fn read(function: &[f64], wavelength_nm: f64) -> f64 {
-    let (below, fraction) = place(wavelength_nm);
+    let (below, fraction) = grid_position(wavelength_nm);
     function[below] + fraction * (function[below + 1] - function[below])
 }
 
@@ -42,14 +42,14 @@ pub fn color_matching(wavelength_nm: f64) -> [f64; 3] {
     if !(FIRST_NM..=LAST_NM).contains(&wavelength_nm) {
         return [0.0; 3];
     }
-    let (below, fraction) = place(wavelength_nm);
-    let [a, b] = [0, 1].map(|step| data::color_matching()[below - ULTRAVIOLET + step]);
+    let (below, fraction) = grid_position(wavelength_nm);
+    let [a, b] = [0, 1].map(|step| data::color_matching()[below - ULTRAVIOLET_COUNT + step]);
     std::array::from_fn(|i| a[i] + fraction * (b[i] - a[i]))
 }
 
 /// Returns the color matching functions at each wavelength of the grid.
 pub fn observer() -> impl Iterator<Item = [f64; 3]> {
-    std::iter::repeat_n([0.0; 3], ULTRAVIOLET).chain(data::color_matching().iter().copied())
+    std::iter::repeat_n([0.0; 3], ULTRAVIOLET_COUNT).chain(data::color_matching().iter().copied())
 }
 
 /// Returns CIE XYZ of a spectrum on the grid: the sum over 1 nm steps (CIE 15:2018, equation 7.1) with k = 1.
@@ -66,6 +66,6 @@ pub(super) fn white(space: ColorSpace) -> (Vec<f64>, [f64; 3]) {
 }
 
 /// Returns the integral of y-bar over the visible range: Y of a flat spectrum of 1 before it is scaled.
-pub fn luminous() -> f64 {
+pub fn y_integral() -> f64 {
     data::color_matching().iter().map(|cmf| cmf[1]).sum()
 }

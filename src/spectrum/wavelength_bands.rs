@@ -21,15 +21,15 @@ impl Default for WavelengthBands {
 
 impl WavelengthBands {
     /// Maximum number of bands of an image.
-    pub const MOST: usize = 1000;
+    pub const MAX_COUNT: usize = 1000;
 
     /// Creates bands whose centers lie `step_nm` apart, from `from_nm` to the last that is not beyond `to_nm`; `None`
-    /// unless the step is positive and the number of bands is 1 to [`MOST`](Self::MOST).
+    /// unless the step is positive and the number of bands is 1 to [`MAX_COUNT`](Self::MAX_COUNT).
     pub fn new(from_nm: f64, to_nm: f64, step_nm: f64) -> Option<Self> {
         // The last band still counts if only rounding of the ends puts it beyond `to_nm`.
         let rounding = 4.0 * f64::EPSILON * (from_nm.abs() + to_nm.abs());
         let steps = ((to_nm - from_nm + rounding) / step_nm).floor();
-        let fits = step_nm > 0.0 && (0.0..Self::MOST as f64).contains(&steps);
+        let fits = step_nm > 0.0 && (0.0..Self::MAX_COUNT as f64).contains(&steps);
         fits.then(|| Self { first_nm: from_nm, step_nm, count: steps as usize + 1 })
     }
 
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn rounding_takes_no_last_band() {
+    fn rounding_does_not_drop_the_last_band() {
         for tenths in 3000..8000_u32 {
             for (step, steps) in [(1, 2), (1, 5), (1, 500), (3, 7), (11, 50), (25, 4)] {
                 let [from, to, step] = [tenths, tenths + step * steps, step].map(|tenth| f64::from(tenth) / 10.0);
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn bands_that_are_none_or_too_many_are_refused() {
+    fn no_bands_or_too_many_bands_are_refused() {
         assert_eq!(WavelengthBands::new(380.0, 780.0, 5.0), Some(WavelengthBands::default()));
         assert!(WavelengthBands::new(780.0, 380.0, 5.0).is_none());
         assert!(WavelengthBands::new(380.0, 780.0, 0.0).is_none());

@@ -17,19 +17,19 @@ use crate::math::{Bounds, DVec3, Ray};
 use crate::shape::{Density, Quad, Shape};
 
 /// Maximum number of places: each costs time at every bounce.
-pub(super) const MOST: usize = 6;
+pub(super) const MAX_PLACES: usize = 6;
 /// Largest probability that a bounce is aimed. The noise of all other light at most doubles.
-const LARGEST: f64 = 0.5;
+const MAX_AIMED_SHARE: f64 = 0.5;
 /// Exponents of the albedo in the largest aimed share of the bounces. At a surface of albedo a, at most 1 - a^2 of the
 /// bounces are aimed. With more, the second moment a^2 / (1 - share) of a path that is not aimed would grow at every
 /// bounce, without bound in a room of one color. Where all light comes from what is aimed at, the limit is 1 - a: all
 /// paths in such a room then have the same weight.
-const FINITE: i32 = 2;
-const EQUAL: i32 = 1;
+const FINITE_EXPONENT: i32 = 2;
+const EQUAL_EXPONENT: i32 = 1;
 /// Weight of light from elsewhere relative to that of the places, which others may see too: 2 to 6 work equally well.
-const ELSEWHERE: f64 = 3.0;
+const ELSEWHERE_WEIGHT: f64 = 3.0;
 /// Distance from a place's plane, in its half diagonals, below which it is not aimed at: its outline is uncertain.
-const FLAT: f64 = 1e-3;
+const MIN_HEIGHT: f64 = 1e-3;
 
 /// A rectangle from which or through which much light comes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,7 +78,7 @@ struct BrightTarget {
     normal: DVec3,
     area: f64,
     /// Height above its plane below which it is not aimed at.
-    flat: f64,
+    min_height: f64,
     radiance: f64,
 }
 
@@ -98,7 +98,7 @@ pub(super) struct Aiming<'a> {
     bright: &'a Bright,
     from: DVec3,
     /// Probability of each place among the aimed directions.
-    chances: [f64; MOST],
+    chances: [f64; MAX_PLACES],
     /// Probability that a direction is aimed.
     share: f64,
 }
@@ -112,13 +112,13 @@ impl Bright {
                 center,
                 normal: u.cross(v).normalize(),
                 area: 4.0 * u.cross(v).length(),
-                flat: FLAT * (u.length_squared() + v.length_squared()).sqrt(),
+                min_height: MIN_HEIGHT * (u.length_squared() + v.length_squared()).sqrt(),
                 radiance,
             }
         };
-        let targets = found.places.iter().take(MOST).map(target).collect();
-        let left = if found.are_openings { EQUAL } else { FINITE };
-        Self { within: found.within, targets, elsewhere: ELSEWHERE * found.elsewhere, left }
+        let targets = found.places.iter().take(MAX_PLACES).map(target).collect();
+        let left = if found.are_openings { EQUAL_EXPONENT } else { FINITE_EXPONENT };
+        Self { within: found.within, targets, elsewhere: ELSEWHERE_WEIGHT * found.elsewhere, left }
     }
 
     /// Returns how to aim bounces at a point of a surface with this unit normal and albedo; `None` if they are not.
@@ -127,16 +127,16 @@ impl Bright {
             return None;
         }
         // Roughly what each place contributes: radiance x solid angle x cosine, bounded nearby.
-        let (mut chances, mut all) = ([0.0; MOST], 0.0);
+        let (mut chances, mut all) = ([0.0; MAX_PLACES], 0.0);
         for (chance, target) in chances.iter_mut().zip(&self.targets) {
-            let way = target.center - from;
-            let height = way.dot(target.normal).abs();
-            if height < target.flat {
+            let offset = target.center - from;
+            let height = offset.dot(target.normal).abs();
+            if height < target.min_height {
                 continue;
             }
-            let squared = way.length_squared();
+            let squared = offset.length_squared();
             let length = squared.sqrt();
-            let here = 0.1 + (way.dot(normal) / length).max(0.0);
+            let here = 0.1 + (offset.dot(normal) / length).max(0.0);
             let there = 0.05 + height / length;
             *chance = target.radiance * target.area * here * there / (squared + 0.3 * target.area);
             all += *chance;
@@ -145,7 +145,7 @@ impl Bright {
             return None;
         }
         chances.iter_mut().for_each(|chance| *chance /= all);
-        let largest = LARGEST.min(1.0 - albedo().min(1.0).powi(self.left));
+        let largest = MAX_AIMED_SHARE.min(1.0 - albedo().min(1.0).powi(self.left));
         let share = (all / (all + PI * self.elsewhere)).min(largest);
         Some(Aiming { bright: self, from, chances, share })
     }
@@ -153,7 +153,7 @@ impl Bright {
 
 impl Aiming<'_> {
     /// Chooses between an aimed direction (`Ok`) and one by the material (`Err`), and returns the random number for it.
-    pub(super) fn divided(&self, u: f64) -> Result<f64, f64> {
+    pub(super) fn choose_technique(&self, u: f64) -> Result<f64, f64> {
         if u < self.share { Ok(u / self.share) } else { Err((u - self.share) / (1.0 - self.share)) }
     }
 
@@ -178,11 +178,11 @@ impl Aiming<'_> {
 
     /// Returns the density of a direction that the material samples with density `own`.
     pub(super) fn pdf(&self, direction: DVec3, own: f64) -> f64 {
-        self.pdf_knowing(direction, own, None)
+        self.pdf_given(direction, own, None)
     }
 
     /// Returns the density of a direction, given the material's density `own` and that of one place, if it is known.
-    pub(super) fn pdf_knowing(&self, direction: DVec3, own: f64, known: Option<(usize, f64)>) -> f64 {
+    pub(super) fn pdf_given(&self, direction: DVec3, own: f64, known: Option<(usize, f64)>) -> f64 {
         let ray = Ray { origin: self.from, direction };
         let mut sum = 0.0;
         for (number, &chance) in self.chances.iter().enumerate().filter(|(_, chance)| **chance > 0.0) {
@@ -202,7 +202,7 @@ impl Aiming<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Frame, cosine_hemisphere, unit};
+    use crate::math::{Frame, sample_cosine_hemisphere, unit};
 
     /// Returns three places: one upright, one lying and one tilted. All are aimed at, but from their planes.
     fn bright() -> Bright {
@@ -265,9 +265,9 @@ mod tests {
                 // Points of two additive sequences: well spread, but without a structure of cells.
                 let u = |step: f64| (0.5 + f64::from(number) * step).fract();
                 let [a, b] = [u(0.754_877_666_246_692_8), u(0.569_840_290_998_053_3)];
-                let direction = match aiming.divided(a) {
+                let direction = match aiming.choose_technique(a) {
                     Ok(aimed) => aiming.draw([aimed, b]).expect("places are seen").0,
-                    Err(own) => unit(frame.to_world(cosine_hemisphere([own, b]))),
+                    Err(own) => unit(frame.to_world(sample_cosine_hemisphere([own, b]))),
                 };
                 counts[cell(&frame, direction)] += 1.0;
             }
@@ -281,9 +281,10 @@ mod tests {
     }
 
     #[test]
-    fn paths_that_are_not_aimed_gain_no_weight_without_end() {
+    fn unaimed_paths_do_not_gain_weight_without_bound() {
         let share = |only: bool, albedo: f64| {
-            let bright = Bright { elsewhere: 0.0, left: if only { EQUAL } else { FINITE }, ..bright() };
+            let bright =
+                Bright { elsewhere: 0.0, left: if only { EQUAL_EXPONENT } else { FINITE_EXPONENT }, ..bright() };
             bright.at(DVec3::new(0.3, 0.9, 0.2), DVec3::NEG_X, || albedo).expect("it lies within").share
         };
         for (albedo, among, alone) in [(0.2, 0.5, 0.5), (0.6, 0.5, 0.4), (0.8, 0.36, 0.2), (1.0, 0.0, 0.0)] {

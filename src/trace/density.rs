@@ -53,14 +53,14 @@ impl Rate {
     }
 
     /// Returns the samples that the pixel takes, given those that an average pixel takes.
-    pub fn of(self, all: &Range<u32>) -> Range<u32> {
-        let of =
+    pub fn own_numbers(self, all: &Range<u32>) -> Range<u32> {
+        let scale =
             |number: u32| if self.0 < 0 { number.div_ceil(1 << -self.0) } else { number.saturating_mul(1 << self.0) };
-        of(all.start)..of(all.end)
+        scale(all.start)..scale(all.end)
     }
 
     /// Returns the sample of an average pixel with which a sample of this one is taken.
-    pub fn among_all(self, own: u32) -> u32 {
+    pub fn average_number(self, own: u32) -> u32 {
         if self.0 < 0 { own << -self.0 } else { own >> self.0 }
     }
 }
@@ -74,9 +74,10 @@ mod tests {
         for rate in (SampleDensity::LEAST..=SampleDensity::MOST).map(Rate) {
             let (mut next, mut taken) = (0, 0);
             for all in [0..1, 1..2, 2..5, 5..16, 16..17, 17..64] {
-                let own = rate.of(&all);
+                let own = rate.own_numbers(&all);
                 assert_eq!(own.start, next, "{rate:?}");
-                own.clone().for_each(|number| assert!(all.contains(&rate.among_all(number)), "{rate:?}, {number}"));
+                own.clone()
+                    .for_each(|number| assert!(all.contains(&rate.average_number(number)), "{rate:?}, {number}"));
                 (next, taken) = (own.end, taken + own.len());
             }
             assert_eq!(taken as f64, 64.0 * rate.times());

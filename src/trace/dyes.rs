@@ -7,11 +7,11 @@ use super::received_light::{ReceivedLight, SourceId};
 use crate::light::LightId;
 use crate::material::{Diffuse, Material};
 use crate::scene::Scene;
-use crate::spectrum::{Basis, Curve, Distinct, Draw, Dye, Emission, Lanes, Quantity, Response, Table};
+use crate::spectrum::{Basis, Curve, CurveCache, Draw, Dye, Emission, Lanes, Quantity, Response, Table};
 
 /// Smallest probability of one dye, unless there are many, and largest of all together: only sampling depends on them.
-const LEAST: f64 = 0.05;
-const MOST: f64 = 0.75;
+const MIN_SHARE: f64 = 0.05;
+const MAX_TOTAL: f64 = 0.75;
 
 #[derive(Clone, Debug)]
 pub(super) struct Dyes {
@@ -37,24 +37,24 @@ impl Dyes {
             dyes.extend(named.material.dyes().into_iter().map(|dye| dye.dye()));
         }
         first.push(dyes.len());
-        if dyes.is_empty() || !basis.can_excite() {
+        if dyes.is_empty() || !basis.has_wavelengths() {
             return None;
         }
         let lights: Vec<&Curve> = scene.lights.iter().map(|light| light.emission()).collect();
-        *basis = basis.clone().exciting(&dyes, &lights);
-        let mut emissions = Distinct::default();
+        *basis = basis.clone().for_dyes(&dyes, &lights);
+        let mut emissions = CurveCache::default();
         let mut emission = |curve| emissions.of(curve, |curve| Arc::new(Emission::new(curve, basis.color_space())));
         let curves = lights.iter().copied().chain(dyes.iter().map(|dye| &dye.emission));
         let sources: Vec<(&Curve, Arc<Emission>)> = curves.map(|curve| (curve, emission(curve))).collect();
         let of_dye = |dye: &Dye| {
-            let (dye, mut distinct) = (dye.excitable(), Distinct::default());
+            let (dye, mut distinct) = (dye.prepared(), CurveCache::default());
             let mut of = |curve, emission| distinct.of(curve, |_| basis.excitation(&dye, emission));
             sources.iter().map(|(curve, emission)| of(*curve, emission)).collect()
         };
         let share = |dye: &Dye| {
             let absorbed = basis.tabulate(Quantity::Excitation, &dye.absorption);
             let mean = absorbed.bins().iter().sum::<f64>() / absorbed.bins().len() as f64;
-            (dye.quantum_yield * mean).max(LEAST)
+            (dye.quantum_yield * mean).max(MIN_SHARE)
         };
         let reflectance = basis.tabulate(Quantity::Reflectance, &1.0.into());
         let white = Material::Diffuse(Diffuse { reflectance, fluorescence: None });
@@ -73,7 +73,7 @@ impl Dyes {
     /// Returns the probabilities of following each of these dyes, for a path that continues in only one way.
     pub(super) fn chances(&self, dyes: Range<usize>) -> DyeChances<'_> {
         let total: f64 = self.shares[dyes].iter().sum();
-        DyeChances { dyes: self, fit: (MOST / total).min(1.0), total }
+        DyeChances { dyes: self, scale: (MAX_TOTAL / total).min(1.0), total }
     }
 
     /// Returns the number of a dye as a source of light.
@@ -86,41 +86,41 @@ impl Dyes {
         &self.excitations[dye][source]
     }
 
-    /// Returns the maximum of `number` over all dyes, each as a source with the lanes that a light's emission excites.
-    pub(super) fn most_excited<const N: usize>(
+    /// Returns the maximum of `measure` over all dyes, each as a source with the lanes that a light's emission excites.
+    pub(super) fn max_excited<const N: usize>(
         &self,
         light: LightId,
         draw: &Draw<N>,
         emission: Lanes<N>,
-        number: impl Fn(SourceId, Lanes<N>) -> f64,
+        measure: impl Fn(SourceId, Lanes<N>) -> f64,
     ) -> f64 {
         let received = ReceivedLight { source: light, draw, lanes: &emission, parted: false };
-        let of_dye = |dye| number(self.source(dye), draw.start() * self.excited(dye, &received) as f32);
+        let of_dye = |dye| measure(self.source(dye), draw.start() * self.brightness(dye, &received) as f32);
         (0..self.excitations.len()).map(of_dye).fold(0.0, f64::max)
     }
 
     /// Returns the brightness of a dye where light arrives in lanes.
-    pub(super) fn excited<const N: usize>(&self, dye: usize, received: &ReceivedLight<N>) -> f64 {
+    pub(super) fn brightness<const N: usize>(&self, dye: usize, received: &ReceivedLight<N>) -> f64 {
         let ReceivedLight { source, draw, lanes, parted } = *received;
-        self.excitation(dye, source).sensor(draw, *lanes, parted)[0]
+        self.excitation(dye, source).film_rgb(draw, *lanes, parted)[0]
     }
 }
 
 /// The probabilities with which a path follows some dyes.
 pub(super) struct DyeChances<'a> {
     dyes: &'a Dyes,
-    fit: f64,
+    scale: f64,
     total: f64,
 }
 
 impl DyeChances<'_> {
     /// Returns the probability of one of the dyes.
     pub(super) fn of(&self, dye: usize) -> f64 {
-        self.fit * self.dyes.shares[dye]
+        self.scale * self.dyes.shares[dye]
     }
 
     /// Returns the probability of all dyes together.
     pub(super) fn total(&self) -> f64 {
-        self.fit * self.total
+        self.scale * self.total
     }
 }

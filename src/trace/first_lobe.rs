@@ -48,8 +48,8 @@ fn diffuse_share<const N: usize>(
     wi: DVec3,
 ) -> [f32; 3] {
     let Some((all, _)) = material.evaluate(context, wi) else { return [1.0; 3] };
-    let seen = |lanes: Lanes<N>| white.times(context.draw, lanes, false);
-    let (diffuse, all) = (seen(material.diffuse_part(context, wi)), seen(all));
+    let to_rgb = |lanes: Lanes<N>| white.times(context.draw, lanes, false);
+    let (diffuse, all) = (to_rgb(material.diffuse_part(context, wi)), to_rgb(all));
     std::array::from_fn(|channel| match all[channel] {
         all if all > 0.0 => (diffuse[channel] / all).clamp(0.0, 1.0) as f32,
         _ => 1.0,

@@ -7,7 +7,7 @@ use crate::math::Distribution2d;
 /// Number of cells along each side of the square.
 const SIDE: usize = 64;
 /// Share of the photons that is sent everywhere, whatever was learned. It bounds the brightness of what was missed.
-const EVERYWHERE: f64 = 0.2;
+const UNIFORM_SHARE: f64 = 0.2;
 
 /// A density on the unit square, constant in each of its cells.
 ///
@@ -19,12 +19,12 @@ pub(super) struct Guide {
 
 impl Guide {
     /// Returns a density of 1 everywhere.
-    pub(super) fn even() -> Self {
+    pub(super) fn uniform() -> Self {
         Self::of(|_| 1.0)
     }
 
     /// Learns a density from some photons: their places, and whether they were seen.
-    pub(super) fn learned(photons: &[([f64; 2], bool)]) -> Self {
+    pub(super) fn from_photons(photons: &[([f64; 2], bool)]) -> Self {
         let (mut sent, mut seen) = (vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE]);
         for &(place, was_seen) in photons {
             let cell = cell_of(place);
@@ -33,45 +33,46 @@ impl Guide {
         }
         let share: Vec<f64> = sent.iter().zip(&seen).map(|(sent, seen)| seen / f64::max(*sent, 1.0)).collect();
         // A region that begins in one cell may reach into the next.
-        let spread = |cell: usize| {
+        let max_nearby = |cell: usize| {
             let (row, column) = (cell / SIDE, cell % SIDE);
             let near = |x: usize| x.saturating_sub(1)..=(x + 1).min(SIDE - 1);
             near(row).flat_map(|i| near(column).map(move |j| i * SIDE + j)).map(|i| share[i]).fold(0.0, f64::max)
         };
-        Self::following(&(0..SIDE * SIDE).map(|cell| share[cell] + 0.25 * spread(cell)).collect::<Vec<_>>())
+        Self::from_cells(&(0..SIDE * SIDE).map(|cell| share[cell] + 0.25 * max_nearby(cell)).collect::<Vec<_>>())
     }
 
     /// Returns a density that follows weights of cells, given by number. Weights of single cells count as much as those
     /// of blocks of 2 x 2, 4 x 4 and 8 x 8 cells, because few of many places are known.
-    pub(super) fn weighted(weights: &[(u32, f32)]) -> Self {
-        let mut wanted = vec![0.0; SIDE * SIDE];
+    pub(super) fn from_weights(weights: &[(u32, f32)]) -> Self {
+        let mut cell_weights = vec![0.0; SIDE * SIDE];
         for level in 0..=3 {
             let block = |cell: usize| [cell / SIDE, cell % SIDE].map(|at| at >> level);
             let mut blocks = HashMap::new();
             for &(cell, weight) in weights {
                 *blocks.entry(block(cell as usize)).or_insert(0.0) += f64::from(weight.max(0.0));
             }
-            let of_cell = |cell: usize| blocks.get(&block(cell)).map_or(0.0, |weight| weight * 0.25_f64.powi(level));
-            wanted.iter_mut().enumerate().for_each(|(cell, wanted)| *wanted += of_cell(cell));
+            let weight_of_cell =
+                |cell: usize| blocks.get(&block(cell)).map_or(0.0, |weight| weight * 0.25_f64.powi(level));
+            cell_weights.iter_mut().enumerate().for_each(|(cell, cell_weights)| *cell_weights += weight_of_cell(cell));
         }
-        Self::following(&wanted)
+        Self::from_cells(&cell_weights)
     }
 
     /// Returns a density that is mostly proportional to what is wanted of each cell.
-    fn following(wanted: &[f64]) -> Self {
-        let total: f64 = wanted.iter().sum();
+    fn from_cells(cell_weights: &[f64]) -> Self {
+        let total: f64 = cell_weights.iter().sum();
         if total == 0.0 {
-            return Self::disc();
+            return Self::disk();
         }
-        let everywhere = (0..SIDE * SIDE).filter(|&cell| touches_disc(cell)).count() as f64 / EVERYWHERE;
+        let everywhere = (0..SIDE * SIDE).filter(|&cell| touches_disk(cell)).count() as f64 / UNIFORM_SHARE;
         Self::of(|cell| {
-            f64::from(u8::from(touches_disc(cell))) / everywhere + (1.0 - EVERYWHERE) * wanted[cell] / total
+            f64::from(u8::from(touches_disk(cell))) / everywhere + (1.0 - UNIFORM_SHARE) * cell_weights[cell] / total
         })
     }
 
     /// Returns a constant density in all cells that the largest disk in the square reaches into, and 0 in the others.
-    pub(super) fn disc() -> Self {
-        Self::of(|cell| f64::from(u8::from(touches_disc(cell))))
+    pub(super) fn disk() -> Self {
+        Self::of(|cell| f64::from(u8::from(touches_disk(cell))))
     }
 
     /// Returns a density from the probabilities of cells, up to a factor.
@@ -81,7 +82,7 @@ impl Guide {
 
     /// Samples a place in the square from two random numbers.
     pub(super) fn sample(&self, u: [f64; 2]) -> [f64; 2] {
-        self.cells.sample_place(u)
+        self.cells.sample_point(u)
     }
 
     /// Returns roughly the part of the square in which most places are sampled: for n equally likely cells, n cells.
@@ -96,7 +97,7 @@ impl Guide {
 }
 
 /// Returns whether the largest disk in the square reaches into a cell.
-fn touches_disc(cell: usize) -> bool {
+fn touches_disk(cell: usize) -> bool {
     let nearest = |at: usize| {
         let (low, high) = (2.0 * at as f64 / SIDE as f64 - 1.0, 2.0 * (at + 1) as f64 / SIDE as f64 - 1.0);
         f64::clamp(0.0, low, high)
@@ -122,9 +123,9 @@ mod tests {
     #[test]
     fn photons_go_where_they_are_seen_as_often_as_the_density_says() {
         let seen = |[x, y]: [f64; 2]| (x - 0.3).abs() < 0.02 && y > 0.4;
-        let learned = Guide::learned(&grid(256).map(|place| (place, seen(place))).collect::<Vec<_>>());
-        let weighted = Guide::weighted(&[(2000, 1.0), (2001, 3.0), (700, 0.5)]);
-        for guide in [Guide::even(), Guide::disc(), learned.clone(), weighted] {
+        let learned = Guide::from_photons(&grid(256).map(|place| (place, seen(place))).collect::<Vec<_>>());
+        let weighted = Guide::from_weights(&[(2000, 1.0), (2001, 3.0), (700, 0.5)]);
+        for guide in [Guide::uniform(), Guide::disk(), learned.clone(), weighted] {
             let total: f64 = grid(SIDE as u32).map(|place| guide.density(place)).sum::<f64>() / (SIDE * SIDE) as f64;
             assert!((total - 1.0).abs() < 1e-12, "the density sums to {total}");
             // Integrates over the disk by sampling places: pi / 4 for its area, a sixteenth of it for (x - 1 / 2)^2.
@@ -135,7 +136,7 @@ mod tests {
             let exact = std::f64::consts::PI / 64.0;
             assert!((mean / exact - 1.0).abs() < 2e-3, "{mean} for {exact}");
         }
-        assert!((Guide::even().extent() - 1.0).abs() < 1e-12 && learned.extent() < 0.2);
+        assert!((Guide::uniform().extent() - 1.0).abs() < 1e-12 && learned.extent() < 0.2);
         let hits = grid(200).filter(|&u| seen(learned.sample(u))).count() as f64 / 40_000.0;
         assert!(hits > 0.5, "{hits} of the photons are seen where 0.024 of all would be");
     }

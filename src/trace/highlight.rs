@@ -22,9 +22,9 @@ pub struct Highlight {
     pub center: [f64; 2],
     /// Two conjugate radii of the ellipse, in pixels: a circle's radii after the linear map that makes it the ellipse.
     pub radii: [[f64; 2]; 2],
-    /// How much the density falls toward the rim: at the share r of a radius it is proportional to 1 / (1 + peak r^2)^2.
-    /// That is how the light of a rough surface falls (Walter et al. 2007, *Microfacet Models for Refraction through
-    /// Rough Surfaces*, equation 33). 0 draws evenly.
+    /// How much the density falls toward the rim: at the share r of a radius it is proportional to
+    /// 1 / (1 + peak r^2)^2. The light of a rough surface falls like that (Walter et al. 2007, *Microfacet Models for
+    /// Refraction through Rough Surfaces*, equation 33). 0 draws evenly.
     pub peak: f64,
 }
 
@@ -111,7 +111,7 @@ impl SeenHighlight {
 
     /// Samples a point of the film, in pixels.
     pub fn sample(&self, u: [f64; 2]) -> DVec2 {
-        self.highlight.point(self.cells.sample_place(u))
+        self.highlight.point(self.cells.sample_point(u))
     }
 
     /// Returns the density of samples at a point of the film, per square pixel.

@@ -17,9 +17,9 @@ use crate::spectrum::{Basis, Curve, apply};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Layers {
     /// The requested layers, in the order of the request.
-    pub(super) wanted: Vec<Layer>,
+    pub(super) requested: Vec<Layer>,
     /// For each layer that exists, where its numbers begin, if it is requested.
-    places: Vec<Option<usize>>,
+    offsets: Vec<Option<usize>>,
     /// Length of a row.
     pub(super) numbers: usize,
     /// The group of each light, and the names of the groups' layers.
@@ -34,7 +34,7 @@ pub(super) struct Layers {
     /// The bands of a spectral image, if one is requested.
     pub(super) spectrum: Option<Spectrum>,
     /// Whether light is separated by the lobe of the first surface.
-    pub(super) lobes_apart: bool,
+    pub(super) separates_lobes: bool,
     /// A light of radiance 1, used to measure albedo, lobes and residual.
     pub(super) white: Option<White>,
     /// The luminance of unit red, green and blue.
@@ -66,12 +66,12 @@ pub(super) struct CatcherLight<T> {
 impl CatcherLight<[f64; 3]> {
     /// Returns the share of each channel that other objects take, times that of the pixel; negative if they add light.
     pub(super) fn shadow(&self) -> [f64; 3] {
-        [0, 1, 2].map(|channel| self.share * taken(self.with[channel], self.without[channel]))
+        [0, 1, 2].map(|channel| self.share * missing_share(self.with[channel], self.without[channel]))
     }
 }
 
 /// Returns the share of some light that is missing with all objects present; 0 if there is no light.
-fn taken(with: f64, without: f64) -> f64 {
+fn missing_share(with: f64, without: f64) -> f64 {
     if without > 0.0 { 1.0 - with / without } else { 0.0 }
 }
 
@@ -83,23 +83,24 @@ impl CatcherLight<f64> {
 
     /// Returns the alpha: the share of luminance that other objects take, times that of the pixel; 0 if they add light.
     pub(super) fn coverage(&self) -> f64 {
-        (self.share * taken(self.with, self.without)).clamp(0.0, self.share)
+        (self.share * missing_share(self.with, self.without)).clamp(0.0, self.share)
     }
 }
 
 /// Values for shadow catchers: two colors and a share.
-const OF_CAUGHT: usize = 7;
+const CAUGHT_VALUES: usize = 7;
 /// Values for polarization: the luminance of each Stokes component.
-pub(super) const STOKES: usize = 4;
+pub(super) const STOKES_VALUES: usize = 4;
 /// Values for a half of the samples: a color, and how many samples it has.
-pub(super) const OF_A_HALF: usize = 4;
+pub(super) const HALF_VALUES: usize = 4;
 
 impl Layers {
     pub(super) fn new(scene: &Scene<Curve>, basis: &Basis) -> Self {
         let color_space = scene.film.color_space;
-        let (luminance, film_white) = (color_space.to_xyz()[1], apply(&color_space.of_xyz(), color_space.white()));
-        let (places, first) = (vec![None; Layer::NAMES.len()], scene.format.first);
-        let mut layers = Self { places, first, luminance, film_white, ..Self::default() };
+        let (luminance, film_white) =
+            (color_space.to_xyz()[1], apply(&color_space.matrix_from_xyz(), color_space.white()));
+        let (offsets, first) = (vec![None; Layer::NAMES.len()], scene.format.first);
+        let mut layers = Self { offsets, first, luminance, film_white, ..Self::default() };
         let mut known = HashMap::new();
         for group in &scene.light_groups {
             let name = light_layer_name(group);
@@ -109,12 +110,12 @@ impl Layers {
         }
         for &layer in &scene.format.layers {
             if layers.at(layer).is_none() {
-                layers.places[layer as usize] = Some(layers.numbers);
-                layers.wanted.push(layer);
+                layers.offsets[layer as usize] = Some(layers.numbers);
+                layers.requested.push(layer);
                 layers.numbers += match layer {
                     Layer::Lights => 3 * layers.groups.len(),
-                    Layer::HalfA | Layer::HalfB => OF_A_HALF,
-                    Layer::Polarization => STOKES,
+                    Layer::HalfA | Layer::HalfB => HALF_VALUES,
+                    Layer::Polarization => STOKES_VALUES,
                     Layer::Samples | Layer::Shadow => 0,
                     _ if layer.is_matte() => 0,
                     _ => layer.channels().len(),
@@ -123,16 +124,16 @@ impl Layers {
         }
         if scene.has_shadow_catchers() {
             layers.caught = Some(layers.numbers);
-            layers.numbers += OF_CAUGHT;
+            layers.numbers += CAUGHT_VALUES;
         }
         if let Some(bands) = scene.format.spectral {
             layers.spectrum = Spectrum::new(scene, basis, bands, layers.numbers);
             layers.numbers += layers.spectrum.as_ref().map_or(0, Spectrum::numbers);
         }
-        let mattes = layers.wanted.iter().filter(|layer| layer.is_matte());
+        let mattes = layers.requested.iter().filter(|layer| layer.is_matte());
         layers.ids = mattes.map(|&matte| (matte, names(scene, matte).map(id).collect())).collect();
-        layers.lobes_apart = layers.wanted.iter().any(|layer| layer.is_of_lobe());
-        if layers.lobes_apart || layers.at(Layer::Albedo).or(layers.at(Layer::Residual)).is_some() {
+        layers.separates_lobes = layers.requested.iter().any(|layer| layer.is_of_lobe());
+        if layers.separates_lobes || layers.at(Layer::Albedo).or(layers.at(Layer::Residual)).is_some() {
             layers.white = Some(White::new(basis));
         }
         layers
@@ -144,27 +145,27 @@ impl Layers {
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.wanted.is_empty() && self.caught.is_none() && self.spectrum.is_none()
+        self.requested.is_empty() && self.caught.is_none() && self.spectrum.is_none()
     }
 
     /// Returns where in a row the numbers of a layer begin; `None` if it is not requested.
     #[inline]
     pub(super) fn at(&self, layer: Layer) -> Option<usize> {
-        self.places[layer as usize]
+        self.offsets[layer as usize]
     }
 
     /// Returns whether layers need each gathered photon's light, spectrum or polarization, or whether it was dispersed.
-    pub(super) fn tell_photons_apart(&self) -> bool {
+    pub(super) fn needs_photon_details(&self) -> bool {
         self.at(Layer::Lights).or(self.at(Layer::Dispersed)).is_some() || self.has_stokes() || self.spectrum.is_some()
     }
 
     /// Returns whether any layer shows first surfaces.
-    pub(super) fn see_surfaces(&self) -> bool {
+    pub(super) fn shows_surfaces(&self) -> bool {
         use Layer::{Albedo, GeometricNormal, Normal, Position, Uv};
         [Albedo, Normal, GeometricNormal, Position, Uv].iter().any(|layer| self.at(*layer).is_some())
     }
 
-    pub(super) fn catches(&self) -> bool {
+    pub(super) fn has_catchers(&self) -> bool {
         self.caught.is_some()
     }
 
@@ -177,14 +178,14 @@ impl Layers {
     }
 
     /// Adds the light of a photon on a shadow catcher to a row.
-    pub(super) fn catch_photon(&self, row: &mut [f64], rgb: [f64; 3]) {
+    pub(super) fn add_caught_photon(&self, row: &mut [f64], rgb: [f64; 3]) {
         if let Some(at) = self.caught {
             add(&mut row[at..], rgb);
         }
     }
 
     /// Returns by how much other objects change the light on a shadow catcher, if there is one. Alpha follows from it.
-    pub(super) fn changed(&self, row: &[f64]) -> [f64; 3] {
+    pub(super) fn caught_change(&self, row: &[f64]) -> [f64; 3] {
         self.caught.map_or([0.0; 3], |at| [0, 1, 2].map(|channel| row[at + channel] - row[at + 3 + channel]))
     }
 
@@ -197,7 +198,7 @@ impl Layers {
     }
 
     /// Returns the luminance of the light of shadow catchers.
-    pub(super) fn luminance_caught(&self, caught: &CatcherLight<[f64; 3]>) -> CatcherLight<f64> {
+    pub(super) fn caught_luminance(&self, caught: &CatcherLight<[f64; 3]>) -> CatcherLight<f64> {
         let [with, without] = [&caught.with, &caught.without].map(|rgb| self.luminance_of(rgb));
         CatcherLight { with, without, share: caught.share }
     }
@@ -205,8 +206,8 @@ impl Layers {
     /// Adds the numbers of shadow catchers to sums.
     pub(super) fn add_caught(&self, sums: &mut [f64], row: &[f64]) {
         if let Some(at) = self.caught {
-            let more = &row[at..at + OF_CAUGHT];
-            sums[at..at + OF_CAUGHT].iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+            let more = &row[at..at + CAUGHT_VALUES];
+            sums[at..at + CAUGHT_VALUES].iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
         }
     }
 
@@ -237,7 +238,7 @@ impl Layers {
 
     /// Returns whether any layer needs Stokes vectors.
     pub(super) fn has_stokes(&self) -> bool {
-        self.wanted.iter().copied().any(Layer::is_of_polarization)
+        self.requested.iter().copied().any(Layer::is_of_polarization)
     }
 
     /// Adds S1, S2 and S3 of light, times a factor, to a row.

@@ -22,7 +22,7 @@ pub(super) struct Media {
 }
 
 /// A predicate that tells whether an object counts.
-type Counts<'a> = &'a dyn Fn(u32) -> bool;
+type ObjectFilter<'a> = &'a dyn Fn(u32) -> bool;
 
 /// The change of a ray's media where it crosses a surface.
 #[derive(Clone, Copy)]
@@ -54,25 +54,30 @@ impl Media {
     /// more often than it enters it. This does not hold for half spaces, which may reach to infinity. They are counted
     /// by the planes that the point lies behind.
     pub(super) fn around(scene: &Scene<Table>, start: DVec3, direction: DVec3) -> Self {
-        Self::around_of(scene, start, direction, &|_| true)
+        Self::around_among(scene, start, direction, &|_| true)
     }
 
     /// Finds the media around a point, among the objects that count. The straight walk starts near `direction`.
-    pub(super) fn around_of(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: Counts) -> Self {
+    pub(super) fn around_among(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: ObjectFilter) -> Self {
         let is_bounded = |object: u32| scene.objects[object as usize].shape.is_bounded() && counts(object);
-        let left = Self::left_by(scene, start, aside(direction), &is_bounded);
+        let left = Self::exit_balance(scene, start, perturbed(direction), &is_bounded);
         let mut media = Self::default();
         for (material, count) in left.into_iter().filter(|(_, count)| *count > 0) {
             media = media.with(material, count as u32);
         }
-        for (material, count) in behind_planes(scene, start, direction, counts) {
+        for (material, count) in half_spaces_around(scene, start, direction, counts) {
             media = media.with(material, count);
         }
         media
     }
 
     /// Returns how much more often a walk to infinity leaves bodies of each medium than it enters them.
-    fn left_by(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: Counts) -> Vec<(MaterialId, i32)> {
+    fn exit_balance(
+        scene: &Scene<Table>,
+        start: DVec3,
+        direction: DVec3,
+        counts: ObjectFilter,
+    ) -> Vec<(MaterialId, i32)> {
         let mut balance: Vec<(MaterialId, i32)> = Vec::new();
         for MediumChange { material, enters } in medium_changes(scene, Ray { origin: start, direction }, None, counts) {
             let step = if enters { -1 } else { 1 };
@@ -85,7 +90,7 @@ impl Media {
     }
 
     /// Returns the media after a straight walk from one point to another, through the objects that count.
-    pub(super) fn after_walk(self, scene: &Scene<Table>, [from, to]: [DVec3; 2], counts: Counts) -> Self {
+    pub(super) fn after_walk(self, scene: &Scene<Table>, [from, to]: [DVec3; 2], counts: ObjectFilter) -> Self {
         let Some(direction) = (to - from).try_normalize() else { return self };
         medium_changes(scene, Ray { origin: from, direction }, Some(to), counts).fold(self, Self::behind)
     }
@@ -98,7 +103,7 @@ impl Media {
     /// Returns the boundary where a ray crosses a body's surface; `None` if it never entered the body, or if there is
     /// no room for another medium.
     fn boundary(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> Option<Boundary> {
-        let (here, at) = (self.inside(scene), self.place(material));
+        let (here, at) = (self.inside(scene), self.slot(material));
         let beyond = if enters {
             let has_room = at.map_or((self.len as usize) < MOST_MEDIA, |at| self.counts[at] < u16::MAX);
             has_room.then(|| strongest(scene, here.into_iter().chain([material])))?
@@ -139,9 +144,9 @@ impl Media {
     }
 
     /// Returns these media combined with others.
-    pub(super) fn and(self, others: &Self) -> Self {
-        let of_each = others.materials.iter().zip(&others.counts).take(others.len as usize);
-        of_each.fold(self, |media, (&material, &count)| media.with(material, count.into()))
+    pub(super) fn combined_with(self, others: &Self) -> Self {
+        let entries = others.materials.iter().zip(&others.counts).take(others.len as usize);
+        entries.fold(self, |media, (&material, &count)| media.with(material, count.into()))
     }
 
     /// Returns these media with `count` more bodies of one medium, or as many as there is room for.
@@ -151,7 +156,7 @@ impl Media {
 
     fn entered(mut self, material: MaterialId) -> Option<Self> {
         let len = self.len as usize;
-        match self.place(material) {
+        match self.slot(material) {
             Some(at) => self.counts[at] = self.counts[at].checked_add(1)?,
             None if len < MOST_MEDIA => {
                 (self.materials[len], self.counts[len]) = (material, 1);
@@ -164,7 +169,7 @@ impl Media {
 
     fn left(mut self, material: MaterialId) -> Option<Self> {
         let len = self.len as usize;
-        let at = self.place(material)?;
+        let at = self.slot(material)?;
         self.counts[at] -= 1;
         if self.counts[at] == 0 {
             self.materials.copy_within(at + 1..len, at);
@@ -175,13 +180,13 @@ impl Media {
         Some(self)
     }
 
-    fn place(&self, material: MaterialId) -> Option<usize> {
+    fn slot(&self, material: MaterialId) -> Option<usize> {
         self.materials[..self.len as usize].iter().position(|known| *known == material)
     }
 }
 
 /// Maximum number of surfaces that a straight walk crosses. A longer walk is taken to be endless.
-const MOST_CROSSINGS: usize = 100_000;
+const MAX_CROSSINGS: usize = 100_000;
 
 /// Lists the clear bodies that a straight walk to a point or to infinity enters and leaves, among the objects that
 /// count.
@@ -189,7 +194,7 @@ fn medium_changes(
     scene: &Scene<Table>,
     mut ray: Ray,
     to: Option<DVec3>,
-    counts: Counts,
+    counts: ObjectFilter,
 ) -> impl Iterator<Item = MediumChange> {
     let surfaces = std::iter::from_fn(move || {
         let left = to.map_or(f64::INFINITY, |to| (to - ray.origin).dot(ray.direction));
@@ -201,7 +206,7 @@ fn medium_changes(
         Some(MediumChange { material: object.material, enters })
     });
     let is_of_body = move |change: &MediumChange| scene.materials[change.material as usize].material.medium().is_some();
-    surfaces.take(MOST_CROSSINGS).filter(is_of_body)
+    surfaces.take(MAX_CROSSINGS).filter(is_of_body)
 }
 
 /// Returns how many half spaces of each medium a point lies in, among the planes that count.
@@ -209,7 +214,12 @@ fn medium_changes(
 /// Two planes that face away from each other bound a slab. Every point is behind at least one of them, so that one does
 /// not count. The number of half spaces around a point at infinity is therefore subtracted: the smallest of those
 /// forward, backward, and in the mean direction that the planes of the medium face.
-fn behind_planes(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: Counts) -> Vec<(MaterialId, u32)> {
+fn half_spaces_around(
+    scene: &Scene<Table>,
+    start: DVec3,
+    direction: DVec3,
+    counts: ObjectFilter,
+) -> Vec<(MaterialId, u32)> {
     let mut planes: Vec<(MaterialId, Vec<&Plane>)> = Vec::new();
     for (number, object) in scene.unbounded().filter(|(number, _)| counts(*number)) {
         let is_medium = scene.material_of(number).medium().is_some();
@@ -221,9 +231,9 @@ fn behind_planes(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: C
         }
     }
     let count = |planes: &[&Plane]| {
-        let around = |way: DVec3| planes.iter().filter(|plane| plane.normal().dot(aside(way)) < 0.0).count();
-        let fronts = planes.iter().map(|plane| plane.normal()).sum::<DVec3>().try_normalize();
-        let least = [Some(direction), Some(-direction), fronts].into_iter().flatten().map(around).min();
+        let around = |way: DVec3| planes.iter().filter(|plane| plane.normal().dot(perturbed(way)) < 0.0).count();
+        let mean_normal = planes.iter().map(|plane| plane.normal()).sum::<DVec3>().try_normalize();
+        let least = [Some(direction), Some(-direction), mean_normal].into_iter().flatten().map(around).min();
         planes.iter().filter(|plane| plane.is_behind(start)).count().saturating_sub(least.unwrap_or(0)) as u32
     };
     planes.into_iter().map(|(material, planes)| (material, count(&planes))).filter(|(_, count)| *count > 0).collect()
@@ -236,7 +246,7 @@ fn strongest(scene: &Scene<Table>, media: impl Iterator<Item = MaterialId>) -> O
 
 /// Returns a unit vector near another. A direction given by a scene, toward what the camera looks at or straight up,
 /// may lead exactly to a corner of an outline. It is hit once where a body is entered and left, or not.
-fn aside(direction: DVec3) -> DVec3 {
+fn perturbed(direction: DVec3) -> DVec3 {
     unit(Frame::about(direction).to_world(DVec3::new(7.31e-4, 4.19e-4, 1.0)))
 }
 
@@ -255,7 +265,7 @@ pub(super) fn index<const N: usize>(scene: &Scene<Table>, draw: &Draw<N>, inside
 
 /// Returns the factor from radiance in the second medium to radiance in the first, per lane: radiance is proportional
 /// to the square of the index.
-pub(super) fn change_of_radiance<const N: usize>(
+pub(super) fn radiance_factor<const N: usize>(
     scene: &Scene<Table>,
     draw: &Draw<N>,
     sides: [Option<MaterialId>; 2],
@@ -293,7 +303,7 @@ pub(super) fn direction_indices(scene: &Scene<Table>, sides: [Option<MaterialId>
 }
 
 /// Returns whether there are more media than may overlap in one place.
-pub(super) fn are_many(scene: &Scene<Table>) -> bool {
+pub(super) fn has_too_many(scene: &Scene<Table>) -> bool {
     scene.materials.iter().filter(|named| named.material.medium().is_some()).nth(MOST_MEDIA).is_some()
 }
 
@@ -313,10 +323,10 @@ fn media_of(scene: &Scene<Table>, light: LightId) -> Option<Media> {
         Light::Area(area) => {
             let own = area.shape.bounds()?;
             let clear = (0..scene.objects.len()).filter(|&i| scene.material_of(i as u32).medium().is_some());
-            let apart = clear.map(|i| scene.objects[i].shape.bounds()).all(|other| {
+            let is_outside = clear.map(|i| scene.objects[i].shape.bounds()).all(|other| {
                 other.is_some_and(|other| own.max.cmplt(other.min).any() || own.min.cmpgt(other.max).any())
             });
-            apart.then(Media::default)
+            is_outside.then(Media::default)
         }
         Light::Sun(_) | Light::Environment(_) => Some(Media::default()),
     }

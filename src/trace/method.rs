@@ -184,7 +184,7 @@ impl Transport {
     /// body for good.
     ///
     /// Without chance nothing else ends it; with chance, roulette lets one path in 10^32 come as far.
-    pub(super) fn last_vertex(&self) -> u32 {
+    pub(super) fn max_surfaces(&self) -> u32 {
         match self {
             Self::Deterministic { .. } => 1_000,
             Self::Random { .. } => 100_000,

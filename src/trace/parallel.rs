@@ -25,7 +25,7 @@ pub fn run_on<T: Send>(threads: &ThreadPool, work: impl FnOnce() -> T + Send) ->
 }
 
 /// Runs work on a single thread, so that the time it takes is that of one processor.
-pub(super) fn alone<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+pub(super) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     match ThreadPoolBuilder::new().num_threads(1).build() {
         Ok(one) => run_on(&one, work),
         Err(_) => work(),

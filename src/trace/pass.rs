@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::World;
 use super::photon_targets::PhotonTargets;
 use super::replicates::{HALF, REPLICATES};
-use crate::math::seed_of;
+use crate::math::derive_seed;
 
 /// The samples that a pass takes of each pixel, and their random numbers.
 #[derive(Clone, Debug)]
@@ -26,40 +26,40 @@ pub(super) struct Pass {
 
 impl Pass {
     /// Returns a pass of a render without replicates.
-    pub(super) fn of_one_render(world: &World, number: u32, numbers: Range<u32>) -> Self {
+    pub(super) fn without_replicates(world: &World, number: u32, numbers: Range<u32>) -> Self {
         Self { number, numbers, seed: world.method.seed, replicate: None }
     }
 
     /// Returns a pass of one replicate.
     pub(super) fn of_replicate(world: &World, number: u32, numbers: Range<u32>, replicate: u32) -> Self {
-        Self { number, numbers, seed: seed_of(world.method.seed, replicate.into()), replicate: Some(replicate) }
+        Self { number, numbers, seed: derive_seed(world.method.seed, replicate.into()), replicate: Some(replicate) }
     }
 
     /// Returns a pass for a pilot that looks only at its photons.
-    pub(super) fn of_photons_alone(world: &World, number: u32) -> Self {
-        Self::of_one_render(world, number, 0..0)
+    pub(super) fn for_photons_only(world: &World, number: u32) -> Self {
+        Self::without_replicates(world, number, 0..0)
     }
 
     /// Returns the seed of its photons, and the number of earlier passes whose photons have that seed.
     pub(super) fn photon_seed(&self) -> (u64, u64) {
         match self.replicate {
             None => (self.seed, self.number.into()),
-            Some(_) => (seed_of(self.seed, self.numbers.start.into()), 0),
+            Some(_) => (derive_seed(self.seed, self.numbers.start.into()), 0),
         }
     }
 
     /// Returns targets with the photons that this pass sends to them. Without replicates, these are all their photons.
-    /// With replicates, these are `times` as many, in proportion to the pass's share of the method's samples.
-    pub(super) fn targets<'t>(&self, world: &World, targets: &'t PhotonTargets, times: u32) -> Cow<'t, PhotonTargets> {
+    /// With replicates, these are `factor` as many, in proportion to the pass's share of the method's samples.
+    pub(super) fn targets<'t>(&self, world: &World, targets: &'t PhotonTargets, factor: u32) -> Cow<'t, PhotonTargets> {
         let part = self.numbers.len() as f64 / f64::from(world.method.samples);
         match self.replicate {
             None => Cow::Borrowed(targets),
-            Some(_) => Cow::Owned(targets.times(part * f64::from(times))),
+            Some(_) => Cow::Owned(targets.scaled(part * f64::from(factor))),
         }
     }
 
     /// Returns whether it belongs to the first half of all replicates; `None` without replicates.
-    pub(super) fn is_of_first_half(&self) -> Option<bool> {
+    pub(super) fn is_in_first_half(&self) -> Option<bool> {
         self.replicate.map(|replicate| replicate < HALF)
     }
 }
@@ -77,10 +77,10 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    /// Returns the next pass, of at most `most` samples.
-    pub(super) fn pass(self, world: &World, number: u32, most: u32) -> Pass {
+    /// Returns the next pass, of at most `max_samples` samples.
+    pub(super) fn pass(self, world: &World, number: u32, max_samples: u32) -> Pass {
         let start = self.before + self.taken;
-        let end = self.before + self.size.min(self.taken + most);
+        let end = self.before + self.size.min(self.taken + max_samples);
         Pass::of_replicate(world, number, start..end, self.replicate)
     }
 
@@ -107,7 +107,7 @@ impl Stage {
     }
 
     /// Returns whether this is a possible stage after this number of samples of each pixel.
-    pub(super) fn is_after(self, samples: u32) -> bool {
+    pub(super) fn is_possible_after(self, samples: u32) -> bool {
         let Self { before, size, replicate, taken } = self;
         let each = |count: u32| u64::from(REPLICATES as u32) * u64::from(count);
         let own = u64::from(replicate) * u64::from(size) + u64::from(taken);

@@ -66,7 +66,7 @@ impl PathStart {
         match self {
             Self::Nowhere => 0.0,
             Self::Anywhere => light.flux(),
-            Self::Sky(start) => start.of_beam() + start.of_openings,
+            Self::Sky(start) => start.beam_flux() + start.opening_flux,
         }
     }
 
@@ -109,9 +109,9 @@ pub(super) struct SkyStart {
     /// Openings through which all other light of a sky starts.
     openings: Vec<Opening>,
     /// Approximate flux through the openings, per unit of emission.
-    of_openings: f64,
+    opening_flux: f64,
     /// A ball around everything finite.
-    world: Ball,
+    scene_ball: Ball,
 }
 
 /// A beam, and where in it paths start.
@@ -130,17 +130,17 @@ impl SkyStart {
         let sunlit = sunlit.iter().find(|sunlit| sunlit.light == id);
         let beam = sunlit.and_then(|sunlit| SkyBeam::new(light, sunlit));
         let openings = if light.sends_photons_through_openings() { openings.to_vec() } else { Vec::new() };
-        let of_openings = light.mean_radiance() * PI * openings.iter().map(Opening::area).sum::<f64>();
-        let start = Self { beam, openings, of_openings, world: ball_around_all(scene)? };
-        (start.of_beam() + of_openings > 0.0).then_some(start)
+        let opening_flux = light.mean_radiance() * PI * openings.iter().map(Opening::area).sum::<f64>();
+        let start = Self { beam, openings, opening_flux, scene_ball: ball_around_all(scene)? };
+        (start.beam_flux() + opening_flux > 0.0).then_some(start)
     }
 
-    fn of_beam(&self) -> f64 {
+    fn beam_flux(&self) -> f64 {
         self.beam.as_ref().map_or(0.0, |beam| beam.flux)
     }
 
     fn emit(&self, scene: &Scene<Table>, light: &Light<Table>, [a, b, c, d]: [f64; 4]) -> Option<LeSample> {
-        let share = self.of_beam() / (self.of_beam() + self.of_openings);
+        let share = self.beam_flux() / (self.beam_flux() + self.opening_flux);
         let (sample, chance) = match &self.beam {
             Some(beam) if c < share => (beam.emit(light, [a, b, c / share, d])?, share),
             _ => {
@@ -149,7 +149,7 @@ impl SkyStart {
                 (LeSample { ray, factor: 1.0 / pdf, surface: None }, if is_sent { 1.0 - share } else { 0.0 })
             }
         };
-        let (ray, factor) = (started_outside(scene, &self.world, &sample.ray), sample.factor / chance);
+        let (ray, factor) = (started_outside(scene, &self.scene_ball, &sample.ray), sample.factor / chance);
         factor.is_finite().then_some(LeSample { ray, factor, ..sample })
     }
 
@@ -166,7 +166,7 @@ impl SkyBeam {
     /// Returns `None` if no light was found.
     fn new(light: &Light<Table>, sunlit: &SunlitPlaces) -> Option<Self> {
         let beam = light.beam(&Ball { center: sunlit.center, radius: sunlit.radius })?;
-        let guide = Guide::weighted(&sunlit.cells);
+        let guide = Guide::from_weights(&sunlit.cells);
         // The disk covers only a part of the guide's square.
         let flux = guide.extent() * (4.0 / PI) * beam.flux;
         (flux > 0.0 && flux.is_finite()).then_some(Self { beam, guide, flux })

@@ -12,25 +12,25 @@ use crate::spectrum::Table;
 /// Number of camera rays along each side of the image.
 const SIDE: u32 = 24;
 /// Maximum number of smooth surfaces that a ray passes, and of lights that are considered.
-const SURFACES: usize = 8;
-const LIGHTS: usize = 4;
+const MAX_SURFACES: usize = 8;
+const MAX_LIGHTS: usize = 4;
 /// A distance beyond all surfaces.
 const FAR: f64 = 1e100;
 /// Minimum number of places that show where light comes through.
-const FEWEST: usize = 16;
+const MIN_PLACES: usize = 16;
 /// Places more than this factor farther from the camera than the nearest ones belong to the next part.
-const FARTHER: f64 = 2.5;
+const PART_DEPTH_RATIO: f64 = 2.5;
 /// Smallest share of the places in a part.
-const LEAST: f64 = 1.0 / 32.0;
+const MIN_PART_SHARE: f64 = 1.0 / 32.0;
 /// How much larger balls are than the places found: refracted light comes through beside the straight line, and
 /// surfaces outside the image light what is in it.
-const WIDER: f64 = 1.5;
+const BALL_MARGIN: f64 = 1.5;
 /// Parts are kept if they are smaller than the whole by this factor.
-const SMALLER: f64 = 3.0;
+const MIN_SHRINKAGE: f64 = 3.0;
 /// Share of the photons that is sent to the entire whole.
-const EVERYWHERE: f64 = 0.1;
+const WHOLE_SHARE: f64 = 0.1;
 /// On an unbounded surface, how much larger the region that receives photons is than the places found.
-const REACH: f64 = 6.0;
+const REACH_MARGIN: f64 = 6.0;
 
 /// The smoothness of an object that photons can be sent to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,12 +54,12 @@ impl Smoothness {
         let material = scene.material_of(object as u32);
         let lobes = material.lobes();
         let object = &scene.objects[object];
-        let is_bent = || object.shape.is_smooth() || object.relief.is_some();
+        let has_bent_normals = || object.shape.is_smooth() || object.relief.is_some();
         match (material.is_smooth_somewhere(), lobes.intersects(Lobes::BROAD)) {
             (true, false) => Some(Self::Whole),
             (true, true) => Some(Self::Partial),
             // With normals other than the geometric one, rough transmission cannot be followed forward the same way.
-            (false, false) if lobes.intersects(Lobes::NARROW_TRANSMISSION) && is_bent() => None,
+            (false, false) if lobes.intersects(Lobes::NARROW_TRANSMISSION) && has_bent_normals() => None,
             (false, false) => lobes.is_narrow().then_some(Self::Narrow),
             (false, true) => lobes.has_narrow_apart().then_some(Self::NarrowPartial),
         }
@@ -77,7 +77,7 @@ pub(super) struct FocusPlace {
     pub(super) at: DVec3,
     smoothness: Smoothness,
     /// Whether the surface is unbounded.
-    endless: bool,
+    is_unbounded: bool,
     /// Distance to the camera.
     distance: f64,
 }
@@ -114,11 +114,20 @@ pub(super) fn places(
     }
     for [x, y] in scene.film.whole().middles_of_cells(SIDE) {
         let ray = scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
-        let Some((receiver, primitive)) = walk(scene, to, ray, f64::INFINITY, None, &mut found) else { continue };
-        let to_lights = lights.iter().take(LIGHTS).map(|&light| way_to(&scene.lights[light], receiver));
+        let Some((receiver, primitive)) = walk_straight(scene, to, ray, f64::INFINITY, None, &mut found) else {
+            continue;
+        };
+        let to_lights = lights.iter().take(MAX_LIGHTS).map(|&light| vector_to(&scene.lights[light], receiver));
         for way in to_lights.chain(openings.iter().map(|opening| opening.center - receiver)) {
             if let Some(direction) = way.try_normalize() {
-                walk(scene, to, Ray { origin: receiver, direction }, way.length(), Some(primitive), &mut found);
+                walk_straight(
+                    scene,
+                    to,
+                    Ray { origin: receiver, direction },
+                    way.length(),
+                    Some(primitive),
+                    &mut found,
+                );
             }
         }
     }
@@ -128,17 +137,18 @@ pub(super) fn places(
 /// Walks straight through smooth surfaces and see-through sheets, and adds the places on the way that photons are sent
 /// to. Returns the first other surface, or one that is smooth only in part. A ray that has left no surface is a camera
 /// ray.
-fn walk(
+fn walk_straight(
     scene: &Scene<Table>,
     to: &[Smoothness],
     mut ray: Ray,
     mut distance: f64,
-    mut left: Option<Primitive>,
+    mut last_hit: Option<Primitive>,
     found: &mut Vec<FocusPlace>,
 ) -> Option<(DVec3, Primitive)> {
-    let seen = left.is_none();
-    for _ in 0..SURFACES {
-        let hit = if seen { scene.intersect_seen(&ray, left) } else { scene.intersect_from(&ray, left) }?;
+    let is_camera_ray = last_hit.is_none();
+    for _ in 0..MAX_SURFACES {
+        let hit =
+            if is_camera_ray { scene.intersect_seen(&ray, last_hit) } else { scene.intersect_from(&ray, last_hit) }?;
         let object = &scene.objects[hit.object as usize];
         let point = object.point(&ray, &hit.intersection);
         distance -= hit.intersection.t;
@@ -148,19 +158,24 @@ fn walk(
         let (smoothness, material) = (Smoothness::of(scene, hit.object as usize), scene.material_of(hit.object));
         if let Some(smoothness) = smoothness.filter(|smooth| to.contains(smooth)) {
             let distance = (point.position - scene.camera.position()).length();
-            found.push(FocusPlace { at: point.position, smoothness, endless: !object.shape.is_bounded(), distance });
+            found.push(FocusPlace {
+                at: point.position,
+                smoothness,
+                is_unbounded: !object.shape.is_bounded(),
+                distance,
+            });
         }
         let lets_through = material.is_see_through() && material.lobes() == Lobes::NONE;
         if smoothness != Some(Smoothness::Whole) && !lets_through {
             return Some((point.position, hit.primitive()));
         }
-        (ray, left) = (point.leave(ray.direction), Some(hit.primitive()));
+        (ray, last_hit) = (point.leave(ray.direction), Some(hit.primitive()));
     }
     None
 }
 
 /// Returns the vector from a place to the middle of a light; toward the sky, it leads beyond all surfaces.
-fn way_to(light: &Light<Table>, place: DVec3) -> DVec3 {
+fn vector_to(light: &Light<Table>, place: DVec3) -> DVec3 {
     match light {
         Light::Sun(_) | Light::Environment(_) => light.bright_direction([0.5; 2]).map_or(DVec3::ZERO, |sky| sky * FAR),
         Light::Area(area) => area.visible_part().map_or(DVec3::ZERO, |part| part.0.center - place),
@@ -171,42 +186,42 @@ fn way_to(light: &Light<Table>, place: DVec3) -> DVec3 {
 
 /// Returns the ball within which photons are sent to unbounded surfaces; `None` if too few of their places were found.
 pub(super) fn reach(places: &[FocusPlace]) -> Option<Ball> {
-    let places: Vec<FocusPlace> = places.iter().filter(|place| place.endless).copied().collect();
-    (places.len() >= FEWEST).then(|| around(&places, REACH))
+    let places: Vec<FocusPlace> = places.iter().filter(|place| place.is_unbounded).copied().collect();
+    (places.len() >= MIN_PLACES).then(|| around(&places, REACH_MARGIN))
 }
 
-/// Returns at most `most` parts of what has this smoothness in a ball; none if it is seen as a whole, or not at all.
+/// Returns at most `max` parts of what has this smoothness in a ball; none if it is seen as a whole, or not at all.
 ///
 /// A part with n places receives photons in proportion to the square root of n. In proportion to area, the near parts
 /// would receive too few. In proportion to pixels, the far ones would: there, photons are gathered around places that
 /// look longer than wide.
-pub(super) fn parts(places: &[FocusPlace], smoothness: Smoothness, whole: &Ball, most: usize) -> Vec<FocusBall> {
+pub(super) fn parts(places: &[FocusPlace], smoothness: Smoothness, whole: &Ball, max: usize) -> Vec<FocusBall> {
     let is_in = |place: &&FocusPlace| place.smoothness == smoothness && whole.contains(place.at);
     let mut places: Vec<FocusPlace> = places.iter().filter(is_in).copied().collect();
-    if places.len() < FEWEST {
+    if places.len() < MIN_PLACES {
         return Vec::new();
     }
     places.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-    let least = (LEAST * places.len() as f64).ceil() as usize;
-    let (mut parts, mut told) = (Vec::new(), 0);
-    while told < places.len() {
-        let far = FARTHER * places[(told + least - 1).min(places.len() - 1)].distance;
-        let near = places.partition_point(|place| place.distance <= far).max(told + 1);
-        let end = if parts.len() + 1 < most { near } else { places.len() };
+    let min_count = (MIN_PART_SHARE * places.len() as f64).ceil() as usize;
+    let (mut parts, mut assigned) = (Vec::new(), 0);
+    while assigned < places.len() {
+        let far = PART_DEPTH_RATIO * places[(assigned + min_count - 1).min(places.len() - 1)].distance;
+        let near = places.partition_point(|place| place.distance <= far).max(assigned + 1);
+        let end = if parts.len() + 1 < max { near } else { places.len() };
         // The ball also encloses all nearer places.
-        parts.push(FocusBall { ball: around(&places[..end], WIDER), share: ((end - told) as f64).sqrt() });
-        told = end;
+        parts.push(FocusBall { ball: around(&places[..end], BALL_MARGIN), share: ((end - assigned) as f64).sqrt() });
+        assigned = end;
     }
     let all: f64 = parts.iter().map(|part| part.share).sum();
-    parts.iter_mut().for_each(|part| part.share *= (1.0 - EVERYWHERE) / all);
-    parts.retain(|part| SMALLER * part.ball.radius < whole.radius && part.ball.radius > 0.0);
+    parts.iter_mut().for_each(|part| part.share *= (1.0 - WHOLE_SHARE) / all);
+    parts.retain(|part| MIN_SHRINKAGE * part.ball.radius < whole.radius && part.ball.radius > 0.0);
     parts
 }
 
 /// Returns a ball around some places, enlarged by a factor.
-fn around(places: &[FocusPlace], wider: f64) -> Ball {
+fn around(places: &[FocusPlace], factor: f64) -> Ball {
     let ball = Ball::of_box(&Bounds::around(places.iter().map(|place| place.at)));
-    Ball { radius: wider * ball.radius, ..ball }
+    Ball { radius: factor * ball.radius, ..ball }
 }
 
 #[cfg(test)]
@@ -220,7 +235,7 @@ mod tests {
         let place = |i| FocusPlace {
             at: DVec3::new(f64::from(i % 24) / 24.0, 0.0, 1.0) * row(i),
             smoothness: Smoothness::Whole,
-            endless: true,
+            is_unbounded: true,
             distance: row(i),
         };
         let places: Vec<FocusPlace> = (1..=576).map(place).collect();

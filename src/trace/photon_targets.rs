@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::guide::Guide;
 use super::photon_focus::{FocusBall, FocusPlace, Smoothness, parts, reach};
 use crate::light::{Beam, LeSample, LightId, Opening};
-use crate::math::{DVec3, Ray, neighbors};
+use crate::math::{DVec3, Ray, group_neighbors};
 use crate::scene::Scene;
 use crate::shape::Ball;
 use crate::spectrum::Table;
@@ -46,17 +46,17 @@ pub(super) struct PhotonTargets {
 
 /// Maximum number of balls of objects that photons are sent to, and of targets of all lights. If there are more
 /// objects, neighbors share a ball.
-const MOST: usize = 32;
-const MOST_AIMS: usize = 8192;
+const MAX_BALLS: usize = 32;
+const MAX_TARGETS: usize = 8192;
 /// Maximum number of parts of a ball, and of all balls of all lights unless each ball has only one.
-const MOST_PARTS: usize = 6;
-const MOST_TOLD_APART: usize = 12;
+const MAX_PARTS: usize = 6;
+const MAX_PARTS_IN_ALL: usize = 12;
 /// Maximum number of balls that are compared with each other.
-const MANY: usize = 4096;
+const MAX_COMPARED_BALLS: usize = 4096;
 /// Share of the photons that is distributed evenly over all targets; the rest is distributed by flux.
-const EVENLY: f64 = 0.1;
+const UNIFORM_SHARE: f64 = 0.1;
 /// Rough reflectance of a clear coat: of the flux sent to partly smooth objects, this share goes on from there.
-const MIRRORED: f64 = 0.05;
+const COAT_REFLECTANCE: f64 = 0.05;
 
 impl PhotonTargets {
     /// Returns the targets of some lights, given with their luminances, toward all objects of some kinds of smoothness.
@@ -71,31 +71,33 @@ impl PhotonTargets {
         photons: u64,
     ) -> Option<Self> {
         let reach = reach(places);
-        let of_object = |object: usize| {
-            let has_end = scene.objects[object].shape.is_bounded();
-            Smoothness::sent_to(scene, object, to).filter(|_| has_end || reach.is_some())
+        let smoothness_of = |object: usize| {
+            let is_bounded = scene.objects[object].shape.is_bounded();
+            Smoothness::sent_to(scene, object, to).filter(|_| is_bounded || reach.is_some())
         };
-        let objects: Vec<Option<Smoothness>> = (0..scene.objects.len()).map(of_object).collect();
-        let most = (MOST_AIMS / lights.len().max(1)).clamp(1, MOST);
+        let objects: Vec<Option<Smoothness>> = (0..scene.objects.len()).map(smoothness_of).collect();
+        let max_count = (MAX_TARGETS / lights.len().max(1)).clamp(1, MAX_BALLS);
         let mut balls = Vec::new();
         for smooth in Smoothness::ALL {
-            let of_all = || objects.iter().zip(scene.objects.iter()).filter(|(found, _)| **found == Some(smooth));
-            let finite = gathered(of_all().filter_map(|(_, object)| object.shape.ball()).collect(), most);
+            let objects_of_kind =
+                || objects.iter().zip(scene.objects.iter()).filter(|(found, _)| **found == Some(smooth));
+            let finite =
+                merge_balls(objects_of_kind().filter_map(|(_, object)| object.shape.ball()).collect(), max_count);
             balls.extend(finite.into_iter().map(|ball| (smooth, ball)));
-            let is_endless = of_all().any(|(_, object)| !object.shape.is_bounded());
-            balls.extend(reach.filter(|_| is_endless).map(|ball| (smooth, ball)));
+            let has_unbounded = objects_of_kind().any(|(_, object)| !object.shape.is_bounded());
+            balls.extend(reach.filter(|_| has_unbounded).map(|ball| (smooth, ball)));
         }
-        let most = (MOST_TOLD_APART / (lights.len() * balls.len()).max(1)).clamp(1, MOST_PARTS);
+        let max_count = (MAX_PARTS_IN_ALL / (lights.len() * balls.len()).max(1)).clamp(1, MAX_PARTS);
         let wholes: Vec<_> =
-            balls.into_iter().map(|(smooth, ball)| (smooth, ball, parts(places, smooth, &ball, most))).collect();
-        let guides = [Guide::even(), Guide::disc()].map(Arc::new);
+            balls.into_iter().map(|(smooth, ball)| (smooth, ball, parts(places, smooth, &ball, max_count))).collect();
+        let guides = [Guide::uniform(), Guide::disk()].map(Arc::new);
         let targets: Vec<_> =
             lights.iter().flat_map(|light| of_light(scene, light.0, light.1, openings, &wholes, &guides)).collect();
         let mut lights = vec![false; scene.lights.len()];
         targets.iter().for_each(|target| lights[target.light] = true);
         let world = ball_around_all(scene).into_iter().chain(reach).reduce(Ball::around)?;
         let mut targets = Self { targets, lights, objects, reach, world, photons };
-        targets.share_out();
+        targets.distribute_photons();
         (!targets.targets.is_empty()).then_some(targets)
     }
 
@@ -104,18 +106,18 @@ impl PhotonTargets {
     }
 
     /// Returns whether photons are sent to a place on an object.
-    pub(super) fn include(&self, scene: &Scene<Table>, object: u32, place: DVec3) -> bool {
+    pub(super) fn includes(&self, scene: &Scene<Table>, object: u32, place: DVec3) -> bool {
         let is_near = || self.reach.is_some_and(|reach| reach.contains(place));
         self.objects[object as usize].is_some() && (scene.objects[object as usize].shape.is_bounded() || is_near())
     }
 
     /// Returns the approximate flux that all targets send, as CIE Y.
     pub(super) fn flux(&self) -> f64 {
-        self.targets.chunk_by(of_one).map(flux).sum()
+        self.targets.chunk_by(is_same_whole).map(flux).sum()
     }
 
     /// Returns the target of a photon, given the photon's number among those of all targets.
-    pub(super) fn of_photon(&self, number: u64) -> usize {
+    pub(super) fn target_of_photon(&self, number: u64) -> usize {
         let mut before = 0;
         let holds = |target: &PhotonTarget| {
             before += target.photons;
@@ -125,10 +127,10 @@ impl PhotonTargets {
     }
 
     /// Adopts what other targets of the same scene, with all these lights, have learned.
-    pub(super) fn follow(&mut self, guided: &Self) {
+    pub(super) fn adopt(&mut self, guided: &Self) {
         self.targets.clone_from(&guided.targets);
         self.targets.retain(|target| self.lights[target.light] && self.objects.contains(&Some(target.smoothness)));
-        self.share_out();
+        self.distribute_photons();
     }
 
     /// Keeps only the targets of some lights, given in order, and of one kind of smoothness.
@@ -139,29 +141,29 @@ impl PhotonTargets {
     }
 
     /// Returns whether photons are sent to objects of this kind of smoothness.
-    pub(super) fn aim_at(&self, smoothness: Smoothness) -> bool {
+    pub(super) fn has_smoothness(&self, smoothness: Smoothness) -> bool {
         self.targets.iter().any(|target| target.smoothness == smoothness)
     }
 
     /// Returns these targets with the number of photons multiplied by a factor.
-    pub(super) fn times(&self, factor: f64) -> Self {
+    pub(super) fn scaled(&self, factor: f64) -> Self {
         let photons = (factor * self.photons as f64).ceil() as u64;
         let mut targets = Self { photons, ..self.clone() };
-        targets.share_out();
+        targets.distribute_photons();
         targets
     }
 
     /// Distributes the photons over the targets, mostly by flux.
-    fn share_out(&mut self) {
+    fn distribute_photons(&mut self) {
         let (total, count) = (self.flux(), self.targets.len() as f64);
-        for whole in self.targets.chunk_by_mut(of_one) {
+        for whole in self.targets.chunk_by_mut(is_same_whole) {
             let flux = flux(whole);
-            let is_worth = |target: &PhotonTarget| target.flux > 0.0;
-            let shares: f64 = whole.iter().filter(|target| is_worth(target)).map(|target| target.share).sum();
+            let sends_flux = |target: &PhotonTarget| target.flux > 0.0;
+            let shares: f64 = whole.iter().filter(|target| sends_flux(target)).map(|target| target.share).sum();
             for target in whole {
-                let of_whole = if is_worth(target) { target.share / shares } else { 0.0 };
-                let by_flux = if total > 0.0 { flux * of_whole / total } else { 1.0 / count };
-                let share = EVENLY / count + (1.0 - EVENLY) * by_flux;
+                let share_of_whole = if sends_flux(target) { target.share / shares } else { 0.0 };
+                let by_flux = if total > 0.0 { flux * share_of_whole / total } else { 1.0 / count };
+                let share = UNIFORM_SHARE / count + (1.0 - UNIFORM_SHARE) * by_flux;
                 target.photons = (share * self.photons as f64).round().max(1.0) as u64;
             }
         }
@@ -172,15 +174,15 @@ impl PhotonTargets {
         for (target, photons) in self.targets.iter_mut().zip(found) {
             let seen = photons.iter().filter(|photon| photon.1).count();
             target.flux *= seen as f64 / photons.len().max(1) as f64;
-            if target.beam.is_apart {
-                target.guide = Arc::new(Guide::learned(photons));
+            if target.beam.is_outside_ball {
+                target.guide = Arc::new(Guide::from_photons(photons));
             }
         }
-        self.share_out();
+        self.distribute_photons();
     }
 
     /// Returns whether photons of a light start along the line of a ray that leads to it.
-    pub(super) fn start_along(&self, scene: &Scene<Table>, light: LightId, ray: &Ray) -> bool {
+    pub(super) fn sends_along(&self, scene: &Scene<Table>, light: LightId, ray: &Ray) -> bool {
         let source = &scene.lights[light];
         if !self.lights[light] || source.sends_photons_from(ray.direction) {
             return self.lights[light];
@@ -207,10 +209,10 @@ impl PhotonTargets {
         let light = &scene.lights[self.targets[number].light];
         let sample = light.sample_le(&self.targets[number].beam, guide_uv, u)?;
         let ray = if light.is_infinite() { started_outside(scene, &self.world, &sample.ray) } else { sample.ray };
-        let sent = |target: &PhotonTarget| {
+        let photon_density = |target: &PhotonTarget| {
             target.photons as f64 * light.pdf_le(&target.beam, &sample, |uv| target.guide.density(uv))
         };
-        let factor = sample.factor / self.targets[first..].iter().take_while(of_light).map(sent).sum::<f64>();
+        let factor = sample.factor / self.targets[first..].iter().take_while(of_light).map(photon_density).sum::<f64>();
         (factor > 0.0 && factor.is_finite()).then_some(LeSample { ray, factor, ..sample })
     }
 }
@@ -223,17 +225,17 @@ fn of_light(
     luminance: f64,
     openings: &[Opening],
     wholes: &[(Smoothness, Ball, Vec<FocusBall>)],
-    [even, disc]: &[Arc<Guide>; 2],
+    [uniform, disk]: &[Arc<Guide>; 2],
 ) -> Vec<PhotonTarget> {
     let target = |through: Option<&Opening>, smoothness: Smoothness, ball: &Ball, share: f64, is_part: bool| {
         let source = &scene.lights[light];
         let beam = through.map_or_else(|| source.beam(ball), |opening| source.beam_through(opening, ball))?;
-        let goes_on = match smoothness {
+        let onward_share = match smoothness {
             Smoothness::Whole | Smoothness::Narrow => 1.0,
-            Smoothness::Partial | Smoothness::NarrowPartial => MIRRORED,
+            Smoothness::Partial | Smoothness::NarrowPartial => COAT_REFLECTANCE,
         };
-        let flux = beam.flux * luminance * goes_on;
-        let guide = if beam.is_apart { disc.clone() } else { even.clone() };
+        let flux = beam.flux * luminance * onward_share;
+        let guide = if beam.is_outside_ball { disk.clone() } else { uniform.clone() };
         (flux > 0.0).then_some(PhotonTarget { light, smoothness, photons: 0, share, is_part, beam, guide, flux })
     };
     let mut targets = Vec::new();
@@ -250,7 +252,7 @@ fn of_light(
 }
 
 /// Returns whether a target is a part of the same whole as the one before it.
-fn of_one(_: &PhotonTarget, next: &PhotonTarget) -> bool {
+fn is_same_whole(_: &PhotonTarget, next: &PhotonTarget) -> bool {
     next.is_part
 }
 
@@ -279,11 +281,11 @@ pub(super) fn started_outside(scene: &Scene<Table>, world: &Ball, ray: &Ray) -> 
     Ray { direction: ray.direction, ..back }
 }
 
-/// Returns the balls that lie in no other ball. If more than `most` are left, neighbors are merged.
-fn gathered(balls: Vec<Ball>, most: usize) -> Vec<Ball> {
+/// Returns the balls that lie in no other ball. If more than `max_count` are left, neighbors are merged.
+fn merge_balls(balls: Vec<Ball>, max_count: usize) -> Vec<Ball> {
     let holds = |a: &Ball, b: &Ball| (a.center - b.center).length() + b.radius <= a.radius;
     let mut outer: Vec<Ball> = Vec::new();
-    if balls.len() > MANY {
+    if balls.len() > MAX_COMPARED_BALLS {
         // Too many balls to compare with each other.
         outer = balls;
     } else {
@@ -295,7 +297,7 @@ fn gathered(balls: Vec<Ball>, most: usize) -> Vec<Ball> {
         }
     }
     let mut found = Vec::new();
-    let mut take = |group: &[Ball]| found.extend(group.iter().copied().reduce(Ball::around));
-    neighbors(&mut outer, most, &|ball| ball.center, &mut take);
+    let mut add_group = |group: &[Ball]| found.extend(group.iter().copied().reduce(Ball::around));
+    group_neighbors(&mut outer, max_count, &|ball| ball.center, &mut add_group);
     found
 }

@@ -19,11 +19,11 @@ impl<const N: usize> ReceivedLight<'_, N> {
     /// Returns the film's red, green and blue, by the sensor's response to the lanes of each source.
     #[inline]
     pub(super) fn rgb(&self, responses: &[Response]) -> [f64; 3] {
-        responses[self.source].sensor(self.draw, *self.lanes, self.parted)
+        responses[self.source].film_rgb(self.draw, *self.lanes, self.parted)
     }
 
     /// Returns the film's red, green and blue of a part of each lane, which may be negative.
     pub(super) fn times(&self, part: Lanes<N>, responses: &[Response]) -> [f64; 3] {
-        responses[self.source].sensor(self.draw, *self.lanes * part, self.parted)
+        responses[self.source].film_rgb(self.draw, *self.lanes * part, self.parted)
     }
 }

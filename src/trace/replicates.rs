@@ -44,11 +44,11 @@ impl CoverageSums {
         (0..3).for_each(|i| self.caught[i] += caught[i] as f32);
     }
 
-    /// Returns the alpha of a pixel by the weights of its samples, if photons were splatted for `splatted_for` samples.
-    fn alpha(&self, weights: &SampleWeights, splatted_for: f64) -> f64 {
+    /// Returns the alpha of a pixel by the weights of its samples, if photons were splatted for `sent_samples` samples.
+    fn alpha(&self, weights: &SampleWeights, sent_samples: f64) -> f64 {
         let met = weights.sum(self.met.map(f64::from)) / weights.taken();
         let [with, without, share] = self.caught.map(|sum| f64::from(sum) / weights.added());
-        let caught = CatcherLight { with: with + f64::from(self.splatted) / splatted_for, without, share };
+        let caught = CatcherLight { with: with + f64::from(self.splatted) / sent_samples, without, share };
         (met.clamp(0.0, 1.0) + caught.coverage()).min(1.0)
     }
 }
@@ -82,7 +82,7 @@ impl ReplicateSums {
         self.0[0].len()
     }
 
-    fn is_shaped_as(&self, other: &Self) -> bool {
+    fn has_same_shape(&self, other: &Self) -> bool {
         self.0.each_ref().map(Vec::len) == other.0.each_ref().map(Vec::len)
     }
 
@@ -96,23 +96,23 @@ impl ReplicateSums {
     }
 
     /// Returns the sums of a pixel in a replicate: of samples that are added, and of those that are subtracted.
-    fn of(&self, pixel: usize, replicate: usize) -> [Sum; 2] {
+    fn sums_of(&self, pixel: usize, replicate: usize) -> [Sum; 2] {
         self.0.each_ref().map(|sums| sums.get(pixel).map_or(Sum::default(), |sums| sums[replicate]))
     }
 
     /// Returns the number of samples of a pixel that a replicate kept.
     fn kept(&self, pixel: usize, replicate: usize) -> u32 {
-        self.of(pixel, replicate).iter().map(|sum| sum.kept).sum()
+        self.sums_of(pixel, replicate).iter().map(|sum| sum.kept).sum()
     }
 
     /// Returns the weights of a pixel's samples in a replicate.
     fn weights(&self, pixel: usize, replicate: usize, filter: Filter) -> SampleWeights {
-        SampleWeights::new(filter, self.of(pixel, replicate).map(|sum| sum.kept))
+        SampleWeights::new(filter, self.sums_of(pixel, replicate).map(|sum| sum.kept))
     }
 
     /// Returns the mean of a pixel's samples in a replicate.
     fn mean(&self, pixel: usize, replicate: usize, filter: Filter) -> [f64; 3] {
-        let (weights, [added, subtracted]) = (self.weights(pixel, replicate, filter), self.of(pixel, replicate));
+        let (weights, [added, subtracted]) = (self.weights(pixel, replicate, filter), self.sums_of(pixel, replicate));
         std::array::from_fn(|i| weights.sum([added.rgb[i].into(), subtracted.rgb[i].into()]) / weights.taken())
     }
 }
@@ -146,20 +146,20 @@ impl Replicates {
         Self { light: ReplicateSums::new(pixels, is_signed), blur, splatted: Vec::new(), covered }
     }
 
-    /// Returns the bytes of memory per pixel; `shows` tells whether photons are splatted.
-    pub(super) fn bytes_of_pixel(is_signed: bool, gathers: bool, catches: bool, shows: bool) -> usize {
+    /// Returns the bytes of memory per pixel; `splats` tells whether photons are splatted.
+    pub(super) fn bytes_of_pixel(is_signed: bool, gathers: bool, catches: bool, splats: bool) -> usize {
         let kinds = (1 + usize::from(is_signed)) * (1 + usize::from(gathers));
-        let [catches, shows] = [catches, shows].map(usize::from);
+        let [catches, splats] = [catches, splats].map(usize::from);
         kinds * size_of::<[Sum; REPLICATES]>()
             + catches * size_of::<[CoverageSums; REPLICATES]>()
-            + shows * size_of::<[[f32; 3]; REPLICATES]>()
+            + splats * size_of::<[[f32; 3]; REPLICATES]>()
     }
 
     /// Returns whether there are as many sums of each kind as in `other`; those of splatted photons may still be
     /// missing.
-    pub(super) fn is_shaped_as(&self, other: &Self) -> bool {
-        self.light.is_shaped_as(&other.light)
-            && self.blur.is_shaped_as(&other.blur)
+    pub(super) fn has_same_shape(&self, other: &Self) -> bool {
+        self.light.has_same_shape(&other.light)
+            && self.blur.has_same_shape(&other.blur)
             && [0, other.light.pixels()].contains(&self.splatted.len())
             && self.covered.len() == other.covered.len()
     }
@@ -172,7 +172,7 @@ impl Replicates {
     }
 
     /// Adds what photons of a replicate splat onto a pixel.
-    pub(super) fn show(&mut self, pixel: usize, replicate: u32, rgb: [f64; 3]) {
+    pub(super) fn add_splat(&mut self, pixel: usize, replicate: u32, rgb: [f64; 3]) {
         if self.splatted.is_empty() {
             self.splatted = vec![[[0.0; 3]; REPLICATES]; self.light.pixels()];
         }
@@ -192,17 +192,17 @@ impl Replicates {
     }
 
     /// Adds the luminance that photons of a replicate splat onto shadow catchers in a pixel.
-    pub(super) fn show_caught(&mut self, pixel: usize, replicate: u32, luminance: f64) {
+    pub(super) fn add_caught_splat(&mut self, pixel: usize, replicate: u32, luminance: f64) {
         self.covered[pixel][replicate as usize].splatted += luminance as f32;
     }
 
     /// Returns the alpha of a pixel in each replicate, after `each` samples of each; `None` without shadow catchers.
     pub(super) fn alpha(&self, pixel: usize, filter: Filter, each: u32) -> Option<[f64; REPLICATES]> {
-        let of = |replicate: usize| {
+        let alpha_of = |replicate: usize| {
             let weights = self.light.weights(pixel, replicate, filter);
             self.covered[pixel][replicate].alpha(&weights, each.into())
         };
-        (!self.covered.is_empty()).then(|| std::array::from_fn(of))
+        (!self.covered.is_empty()).then(|| std::array::from_fn(alpha_of))
     }
 
     /// Returns the color of a pixel in each replicate, after `each` samples of each.
@@ -210,12 +210,12 @@ impl Replicates {
         std::array::from_fn(|replicate| self.pixel_of(replicate, pixel, filter, each.into()))
     }
 
-    /// Returns the color of a pixel in one replicate, whose photons were splatted for `splatted_for` samples.
-    fn pixel_of(&self, replicate: usize, pixel: usize, filter: Filter, splatted_for: f64) -> [f64; 3] {
+    /// Returns the color of a pixel in one replicate, whose photons were splatted for `sent_samples` samples.
+    fn pixel_of(&self, replicate: usize, pixel: usize, filter: Filter, sent_samples: f64) -> [f64; 3] {
         let mean = self.light.mean(pixel, replicate, filter);
         let splatted = self.splatted.get(pixel).map_or([0.0; 3], |splatted| splatted[replicate]);
-        let splatted_for = if splatted_for > 0.0 { splatted_for } else { f64::INFINITY };
-        std::array::from_fn(|i| mean[i] + f64::from(splatted[i]) / splatted_for)
+        let sent_samples = if sent_samples > 0.0 { sent_samples } else { f64::INFINITY };
+        std::array::from_fn(|i| mean[i] + f64::from(splatted[i]) / sent_samples)
     }
 
     /// Returns the blur of a pixel, as estimated by each replicate; `None` if no photons are gathered.
@@ -225,11 +225,11 @@ impl Replicates {
     }
 
     /// Returns the variance of a pixel's mean over all replicates that have begun; `None` while fewer than two have.
-    /// `splatted_for` is the number of samples for which the photons of each replicate were splatted.
-    pub(super) fn variance(&self, pixel: usize, filter: Filter, splatted_for: [f64; REPLICATES]) -> Option<[f64; 3]> {
-        let begun = (0..REPLICATES).filter(|&replicate| self.light.kept(pixel, replicate) > 0);
+    /// `sent_samples` is the number of samples for which the photons of each replicate were splatted.
+    pub(super) fn variance(&self, pixel: usize, filter: Filter, sent_samples: [f64; REPLICATES]) -> Option<[f64; 3]> {
+        let started = (0..REPLICATES).filter(|&replicate| self.light.kept(pixel, replicate) > 0);
         let pixels: Vec<[f64; 3]> =
-            begun.map(|replicate| self.pixel_of(replicate, pixel, filter, splatted_for[replicate])).collect();
+            started.map(|replicate| self.pixel_of(replicate, pixel, filter, sent_samples[replicate])).collect();
         let count = pixels.len() as f64;
         (count > 1.0).then(|| {
             std::array::from_fn(|i| {

@@ -4,8 +4,8 @@
 
 use super::received_light::{ReceivedLight, SourceId};
 use crate::scene::Scene;
-use crate::spectrum::visible::{EFFICACY, luminous};
-use crate::spectrum::{BandResponse, Basis, Curve, Distinct, Lanes, WavelengthBands};
+use crate::spectrum::visible::{EFFICACY, y_integral};
+use crate::spectrum::{BandResponse, Basis, Curve, CurveCache, Lanes, WavelengthBands};
 
 /// The bands of a spectral image, and how the lanes of each light contribute to them.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ pub(super) struct Spectrum {
 impl Spectrum {
     /// Returns `None` if lanes are not wavelengths.
     pub(super) fn new(scene: &Scene<Curve>, basis: &Basis, bands: WavelengthBands, at: usize) -> Option<Self> {
-        let (mut distinct, mut responses) = (Distinct::default(), Vec::new());
+        let (mut distinct, mut responses) = (CurveCache::default(), Vec::new());
         let mut response_of = Vec::new();
         let dyes = scene.materials.iter().flat_map(|named| named.material.dyes());
         for source in scene.lights.iter().map(|light| light.emission()).chain(dyes.map(|dye| &dye.emission)) {
@@ -36,7 +36,7 @@ impl Spectrum {
         }
         let responses = responses.into_iter().collect::<Option<_>>()?;
         // In absolute light, a flat spectrum of this radiance has the luminance of white.
-        let unit = scene.format.white_luminance.map_or(1.0, |white| white / (EFFICACY * luminous()));
+        let unit = scene.format.white_luminance.map_or(1.0, |white| white / (EFFICACY * y_integral()));
         Some(Self { bands, has_stokes: scene.format.has_stokes(), at, unit, response_of, responses })
     }
 
@@ -64,7 +64,7 @@ impl Spectrum {
         let ReceivedLight { source, draw, lanes, parted } = *received;
         let (response, mut all) = (self.response(source), vec![0.0; self.numbers()]);
         for (lanes, bands) in self.parts(lanes, stokes).zip(all.chunks_exact_mut(self.bands.count())) {
-            if !response.heroes(draw, &lanes, parted, |band, light| bands[band] += factor * light) {
+            if !response.visit_hero_bands(draw, &lanes, parted, |band, light| bands[band] += factor * light) {
                 response.add_fixed(&lanes.0.map(|lane| factor * f64::from(lane)), bands);
             }
         }
@@ -87,8 +87,8 @@ pub(super) struct SpectrumSample<'a, const N: usize> {
     spectrum: &'a Spectrum,
     /// Light of the current sample: lanes that never parted, with the number of their component and response and a
     /// factor; and light of single wavelengths, with the number of its component and band.
-    together: Vec<(usize, Lanes<N>, f64)>,
-    alone: Vec<(usize, f64)>,
+    unparted: Vec<(usize, Lanes<N>, f64)>,
+    single: Vec<(usize, f64)>,
     /// Sums over the samples that were kept: those that are added, and those that are subtracted.
     kept: [SpectrumSums<N>; 2],
 }
@@ -104,34 +104,34 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
     pub(super) fn new(spectrum: &'a Spectrum) -> Self {
         let lanes = vec![[0.0; N]; spectrum.components() * spectrum.responses.len()];
         let nothing = SpectrumSums { lanes, bands: vec![0.0; spectrum.numbers()] };
-        Self { spectrum, together: Vec::new(), alone: Vec::new(), kept: [nothing.clone(), nothing] }
+        Self { spectrum, unparted: Vec::new(), single: Vec::new(), kept: [nothing.clone(), nothing] }
     }
 
     /// Begins another sample.
     pub(super) fn begin(&mut self) {
-        self.together.clear();
-        self.alone.clear();
+        self.unparted.clear();
+        self.single.clear();
     }
 
     /// Receives light, times a factor, with its S1, S2 and S3 as parts of it.
     pub(super) fn receive(&mut self, received: &ReceivedLight<N>, stokes: Option<&[Lanes<N>; 3]>, factor: f64) {
-        let Self { spectrum, together, alone, .. } = self;
+        let Self { spectrum, unparted, single, .. } = self;
         let ReceivedLight { source, draw, lanes, parted } = *received;
         for (component, lanes) in spectrum.parts(lanes, stokes).enumerate() {
             let first_band = component * spectrum.bands.count();
-            let found = |band, light| alone.push((first_band + band, factor * light));
-            if !spectrum.response(source).heroes(draw, &lanes, parted, found) {
+            let found = |band, light| single.push((first_band + band, factor * light));
+            if !spectrum.response(source).visit_hero_bands(draw, &lanes, parted, found) {
                 let response = component * spectrum.responses.len() + spectrum.response_of[source];
-                together.push((response, lanes, factor));
+                unparted.push((response, lanes, factor));
             }
         }
     }
 
     /// Receives a component of light of a single wavelength: its band, if it falls into any, and its amount.
-    pub(super) fn receive_alone(&mut self, component: usize, found: Option<(usize, f64)>) {
+    pub(super) fn receive_single(&mut self, component: usize, found: Option<(usize, f64)>) {
         if component < self.spectrum.components() {
             let first_band = component * self.spectrum.bands.count();
-            self.alone.extend(found.map(|(band, light)| (first_band + band, light)));
+            self.single.extend(found.map(|(band, light)| (first_band + band, light)));
         }
     }
 
@@ -143,11 +143,11 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
     /// Keeps what the sample has received, to be added or subtracted.
     pub(super) fn keep(&mut self, is_subtracted: bool) {
         let SpectrumSums { lanes: sums, bands } = &mut self.kept[usize::from(is_subtracted)];
-        for (response, lanes, factor) in self.together.drain(..) {
+        for (response, lanes, factor) in self.unparted.drain(..) {
             let sums = sums[response].iter_mut().zip(lanes.0);
             sums.for_each(|(sum, lane)| *sum += factor * f64::from(lane));
         }
-        self.alone.drain(..).for_each(|(band, light)| bands[band] += light);
+        self.single.drain(..).for_each(|(band, light)| bands[band] += light);
     }
 
     /// Adds everything that was kept to rows of sums, and resets it. If nothing is subtracted, the second may be empty.

@@ -17,6 +17,6 @@ impl White {
 
     /// Returns the film's red, green and blue of it, times a factor on each lane; `parted` tells whether lanes parted.
     pub(super) fn times<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>, parted: bool) -> [f64; 3] {
-        self.response.sensor(draw, lanes * draw.read(&self.emission), parted)
+        self.response.film_rgb(draw, lanes * draw.read(&self.emission), parted)
     }
 }

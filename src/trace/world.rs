@@ -14,10 +14,10 @@ use crate::light::{Light, LightId, LightSampler, Opening};
 use crate::material::Lobes;
 use crate::math::{DVec3, Ray};
 use crate::scene::{Hit, Scene, Visibility};
-use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, Waves, apply};
+use crate::spectrum::{Curve, CurveCache, Draw, MAX_LANES, Quantity, Response, Table, Waves, apply};
 
 /// Maximum number of groups of lights that are weighed separately. If there are more lights, neighbors share one.
-const LIGHTS: usize = 16;
+const MAX_LIGHT_GROUPS: usize = 16;
 
 /// A scene tabulated for the lanes of one method: everything the tracer reads.
 #[derive(Clone, Debug)]
@@ -70,10 +70,10 @@ pub struct World {
 impl World {
     /// Tabulates a scene for a method. Nothing is learned about it: see [`prepare`](super::prepare).
     pub fn new(scene: &Scene<Curve>, mut method: Method) -> Self {
-        let (dyes, of_dyes) = Dyes::new(scene, &mut method.basis).unzip();
-        let (mut tables, mut responses) = (Distinct::default(), Distinct::default());
+        let (dyes, dye_responses) = Dyes::new(scene, &mut method.basis).unzip();
+        let (mut tables, mut responses) = (CurveCache::default(), CurveCache::default());
         let response = |light: &Light<Curve>| responses.of(light.emission(), |curve| method.basis.response(curve));
-        let responses = scene.lights.iter().map(response).chain(of_dyes.into_iter().flatten()).collect();
+        let responses = scene.lights.iter().map(response).chain(dye_responses.into_iter().flatten()).collect();
         let to_xyz = scene.film.color_space.to_xyz();
         let xyz_of_channel = [0, 1, 2].map(|channel| to_xyz.iter().map(|row| row[channel]).sum());
         let layers = Layers::new(scene, &method.basis);
@@ -124,7 +124,7 @@ impl World {
         if has_media {
             let (scene, camera) = (&world.scene, &world.scene.camera);
             let [position, forward] = [camera.position(), camera.forward()];
-            let around = |seen| Media::around_of(scene, position, forward, &|object| scene.is_seen(object) == seen);
+            let around = |seen| Media::around_among(scene, position, forward, &|object| scene.is_seen(object) == seen);
             (world.camera_media, world.hidden_media) = (around(true), around(false));
         }
         world.choose_photon_targets();
@@ -142,7 +142,7 @@ impl World {
     /// Returns this world with its light pass's photons guided by what another world of the same scene has learned.
     pub fn guided_by(mut self, guided: &Self) -> Self {
         if let (Some(targets), Some(guided)) = (&mut self.photon_targets, &guided.photon_targets) {
-            targets.follow(guided);
+            targets.adopt(guided);
         }
         self
     }
@@ -207,17 +207,18 @@ impl World {
         let draw = Draw::<MAX_LANES>::fixed(self.method.basis.fixed_lanes());
         let emission = draw.read(self.scene.lights[light].emission());
         let to_xyz = self.scene.film.color_space.to_xyz();
-        let of = |source: usize, lanes| apply(&to_xyz, self.responses[source].sensor(&draw, lanes, false))[1];
-        let excited = self.dyes.as_ref().map_or(0.0, |dyes| dyes.most_excited(light, &draw, emission, of));
-        of(light, emission).max(excited) * self.scene.lights[light].shown().unwrap_or(1.0)
+        let luminance_of =
+            |source: usize, lanes| apply(&to_xyz, self.responses[source].film_rgb(&draw, lanes, false))[1];
+        let excited = self.dyes.as_ref().map_or(0.0, |dyes| dyes.max_excited(light, &draw, emission, luminance_of));
+        luminance_of(light, emission).max(excited) * self.scene.lights[light].image_brightness().unwrap_or(1.0)
     }
 
     /// Aims the photons of the light pass.
     fn choose_photon_targets(&mut self) {
         (self.photon_targets, self.map_targets) = (None, None);
         let Some(pass) = &self.method.light_pass else { return };
-        let sends = |id: &LightId| self.scene.lights[*id].sends_photons_with(&pass.openings);
-        let senders: Vec<LightId> = pass.lights.iter().copied().filter(sends).collect();
+        let is_sender = |id: &LightId| self.scene.lights[*id].sends_photons_with(&pass.openings);
+        let senders: Vec<LightId> = pass.lights.iter().copied().filter(is_sender).collect();
         let places = places(&self.scene, &senders, &pass.openings, &pass.to);
         let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminance(light))).collect();
         let targets_of =
@@ -274,7 +275,7 @@ impl World {
     }
 
     /// Returns the relative increase in the amount of light from one color to another.
-    pub(super) fn share_of_change(&self, rgb: [f64; 3], changed: [f64; 3]) -> f64 {
+    pub(super) fn relative_change(&self, rgb: [f64; 3], changed: [f64; 3]) -> f64 {
         let amount = self.amount(rgb);
         if amount > 0.0 { self.amount(changed) / amount - 1.0 } else { 0.0 }
     }
@@ -299,14 +300,14 @@ impl World {
 
     /// Returns the media around a ray, without those that the camera does not see.
     pub(super) fn seen_media(&self, ray: &Ray) -> Media {
-        Media::around_of(&self.scene, ray.origin, ray.direction, &|object| self.scene.is_seen(object))
+        Media::around_among(&self.scene, ray.origin, ray.direction, &|object| self.scene.is_seen(object))
     }
 
     /// Returns the media around a point on a straight line from the camera, without those that the camera does not see.
     #[cold]
     pub(super) fn media_seen_at(&self, point: DVec3) -> Media {
-        let way = [self.scene.camera.position(), point];
-        self.camera_media.after_walk(&self.scene, way, &|object| self.scene.is_seen(object))
+        let segment = [self.scene.camera.position(), point];
+        self.camera_media.after_walk(&self.scene, segment, &|object| self.scene.is_seen(object))
     }
 
     /// Returns the media around a surface that a camera ray has hit, of bodies that the camera does not see.
@@ -314,18 +315,18 @@ impl World {
     pub(super) fn media_hidden_at(&self, ray: &Ray, hit: &Hit) -> Media {
         let is_hidden = |object: u32| !self.scene.is_seen(object);
         let [camera, start, end] = [self.scene.camera.position(), ray.origin, ray.at(hit.intersection.t)];
-        let walked = |media: Media, way| media.after_walk(&self.scene, way, &is_hidden);
+        let walked = |media: Media, segment| media.after_walk(&self.scene, segment, &is_hidden);
         walked(walked(self.hidden_media, [camera, start]), [start, end])
     }
 
     /// Returns whether next-event estimation at a vertex of the given weight samples every light, and not only one.
     pub(super) fn samples_all_lights(&self, weight: impl FnOnce() -> f64) -> bool {
         /// Maximum number of lights that may all be sampled from one vertex.
-        const MANY: usize = 8;
+        const MAX_SAMPLED_LIGHTS: usize = 8;
         match self.method.transport {
             Transport::Deterministic { .. } => true,
             Transport::Random { split, .. } => {
-                self.sampled_lights.len() == 1 || (self.sampled_lights.len() <= MANY && weight() > split)
+                self.sampled_lights.len() == 1 || (self.sampled_lights.len() <= MAX_SAMPLED_LIGHTS && weight() > split)
             }
         }
     }
@@ -335,8 +336,8 @@ impl World {
         let Some(pass) = &self.method.light_pass else { return Vec::new() };
         let mut lights = pass.lights.clone();
         lights.sort_unstable();
-        let of_group = lights.len().div_ceil(LIGHTS).max(1);
-        lights.chunks(of_group).map(<[LightId]>::to_vec).collect()
+        let group_size = lights.len().div_ceil(MAX_LIGHT_GROUPS).max(1);
+        lights.chunks(group_size).map(<[LightId]>::to_vec).collect()
     }
 
     /// Returns the openings at which bounces are aimed.
@@ -346,7 +347,7 @@ impl World {
 
     /// Returns whether photons are sent to a place on an object.
     pub(super) fn is_photon_target(&self, object: u32, place: DVec3) -> bool {
-        self.photon_targets.as_ref().is_some_and(|targets| targets.include(&self.scene, object, place))
+        self.photon_targets.as_ref().is_some_and(|targets| targets.includes(&self.scene, object, place))
     }
 
     /// Returns whether photons are sent to any unbounded surface.
@@ -370,7 +371,7 @@ impl World {
 
     /// Returns whether photons carry the light along a ray that hits a light.
     pub(super) fn is_found_by_photons(&self, light: LightId, ray: &Ray) -> bool {
-        self.photon_targets.as_ref().is_some_and(|targets| targets.start_along(&self.scene, light, ray))
+        self.photon_targets.as_ref().is_some_and(|targets| targets.sends_along(&self.scene, light, ray))
     }
 }
 

@@ -20,7 +20,7 @@ samples = 2
 environment = { radiance = 1 }
 "#;
 
-fn written(folder: &Folder, scene: &str, flags: &[&str]) -> Image<Layer<AnyChannels<FlatSamples>>> {
+fn read_output(folder: &Folder, scene: &str, flags: &[&str]) -> Image<Layer<AnyChannels<FlatSamples>>> {
     folder.write("scene.toml", scene);
     let answer = render(folder, &[&["scene.toml", "--exr", "image.exr", "--png", "image.png"], flags].concat());
     assert_eq!((answer.code, &*answer.stdout), (Some(0), ""), "{}", answer.stderr);
@@ -34,7 +34,7 @@ fn a_crop_is_the_data_window_of_the_full_display_window() {
     for (scene, flags) in
         [(cropped.as_str(), &[][..]), (SCENE, &["--crop", "3,1,4,2"]), (&cropped, &["--crop", "3, 1, 4, 2"])]
     {
-        let image = written(&folder, scene, flags);
+        let image = read_output(&folder, scene, flags);
         assert_eq!(image.attributes.display_window, IntegerBounds::from_dimensions((8, 4)));
         assert_eq!(image.layer_data.attributes.layer_position, Vec2(3, 1));
         assert_eq!(image.layer_data.size, Vec2(4, 2));
@@ -57,7 +57,7 @@ fn overscan_begins_before_the_display_window() {
         (&wide, &["--crop", "-3,-1,4,2"], Vec2(-3, -1), Vec2(4, 2)),
         (&wide, &["--crop", "8, 3, 2, 1"], Vec2(8, 3), Vec2(2, 1)),
     ] {
-        let image = written(&folder, scene, flags);
+        let image = read_output(&folder, scene, flags);
         assert_eq!(image.attributes.display_window, IntegerBounds::from_dimensions((8, 4)));
         assert_eq!((image.layer_data.attributes.layer_position, image.layer_data.size), (corner, size), "{flags:?}");
         // The screen window is the one of the display window.
@@ -68,7 +68,7 @@ fn overscan_begins_before_the_display_window() {
 }
 
 #[test]
-fn overscan_that_cannot_be_is_refused() {
+fn impossible_overscan_is_refused() {
     let folder = Folder::with("scene.toml", SCENE);
     let refused = |flags: &[&str]| {
         let answer = render(&folder, &[&["scene.toml"], flags].concat());
@@ -81,32 +81,32 @@ fn overscan_that_cannot_be_is_refused() {
                   help: --crop takes first column, first row, width and height\n";
     assert_eq!(refused(&["--overscan", "1", "--crop", "-1,-1,11,7"]), (Some(2), beyond.to_owned()));
     for wrong in ["-1", "1,2", "1.5", "wide", "99999999999", ""] {
-        let (code, told) = refused(&["--overscan", wrong]);
+        let (code, reported) = refused(&["--overscan", wrong]);
         let expected = "overscan is one or four whole numbers of pixels, such as 16 or 16,8,16,8";
-        assert!(code == Some(2) && told.contains(expected), "{wrong}: {told}");
+        assert!(code == Some(2) && reported.contains(expected), "{wrong}: {reported}");
     }
-    assert_eq!(folder.listing(), ["scene.toml"]);
+    assert_eq!(folder.file_names(), ["scene.toml"]);
 }
 
 #[test]
-fn a_crop_that_cannot_be_is_refused() {
+fn an_impossible_crop_is_refused() {
     let folder = Folder::with("scene.toml", SCENE);
     let beyond = render(&folder, &["scene.toml", "--crop", "5,0,4,4"]);
-    let told = "error: this crop ends at column 9, row 4, but the image has 8 x 4 pixels\n\
+    let reported = "error: this crop ends at column 9, row 4, but the image has 8 x 4 pixels\n\
                 help: --crop takes first column, first row, width and height\n";
-    assert_eq!((beyond.code, beyond.stderr.as_str()), (Some(2), told));
+    assert_eq!((beyond.code, beyond.stderr.as_str()), (Some(2), reported));
     for wrong in ["1,2,3", "1,2,3,4,5", "a,b,c,d", "0,0,-1,2", "0.5,0,1,1"] {
         let answer = render(&folder, &["scene.toml", "--crop", wrong]);
-        let told = "a crop is four whole numbers of pixels, such as 100,50,320,180";
-        assert!(answer.code == Some(2) && answer.stderr.contains(told), "{wrong}: {}", answer.stderr);
+        let reported = "a crop is four whole numbers of pixels, such as 100,50,320,180";
+        assert!(answer.code == Some(2) && answer.stderr.contains(reported), "{wrong}: {}", answer.stderr);
     }
-    assert_eq!(folder.listing(), ["scene.toml"]);
+    assert_eq!(folder.file_names(), ["scene.toml"]);
 }
 
 #[test]
 fn a_shift_moves_the_screen_window() {
     let folder = Folder::new();
-    let image = written(&folder, &SCENE.replace("= 90", "= 90\nshift = [0.25, -0.5]"), &[]);
+    let image = read_output(&folder, &SCENE.replace("= 90", "= 90\nshift = [0.25, -0.5]"), &[]);
     // The shifts are a quarter and a half of the window's height, which is 2 at 90 degrees.
     let attributes = image.layer_data.attributes;
     let near = |a: f32, b: f32| (a - b).abs() <= 1e-6;
@@ -115,32 +115,32 @@ fn a_shift_moves_the_screen_window() {
 }
 
 #[test]
-fn files_say_how_the_world_was_projected() {
+fn files_record_the_projection_of_the_world() {
     let folder = Folder::new();
     let text = |name: &str| Some(AttributeValue::Text(Text::from(name)));
-    let image = written(&folder, SCENE, &[]);
+    let image = read_output(&folder, SCENE, &[]);
     let attributes = &image.layer_data.attributes;
     assert_eq!(attributes.other.get(&Text::from("render/projection")).cloned(), text("perspective"));
     assert_eq!(attributes.environment_map, None);
 
     let full = SCENE.replace("vertical_fov = 90", "projection = \"equirectangular\"");
-    let image = written(&folder, &full, &[]);
+    let image = read_output(&folder, &full, &[]);
     let attributes = &image.layer_data.attributes;
     assert_eq!(attributes.other.get(&Text::from("render/projection")).cloned(), text("equirectangular"));
     assert_eq!(attributes.environment_map, Some(EnvironmentMap::LatitudeLongitude));
     assert_eq!((attributes.screen_window_width, attributes.screen_window_center), (1.0, Vec2(0.0, 0.0)));
     // Readers map the data window to the whole sphere, so an image with a crop or overscan is no environment map.
     for flags in [&["--crop", "0,0,2,2"][..], &["--overscan", "1"], &["--overscan", "1", "--crop", "-1,0,8,4"]] {
-        assert_eq!(written(&folder, &full, flags).layer_data.attributes.environment_map, None);
+        assert_eq!(read_output(&folder, &full, flags).layer_data.attributes.environment_map, None);
     }
 
     let flat = SCENE.replace("vertical_fov = 90", "projection = \"orthographic\"\nheight = 3\nshift = [0, 1]");
-    let attributes = written(&folder, &flat, &[]).layer_data.attributes;
+    let attributes = read_output(&folder, &flat, &[]).layer_data.attributes;
     assert_eq!((attributes.screen_window_width, attributes.screen_window_center), (6.0, Vec2(0.0, 3.0)));
 }
 
 #[test]
-fn files_say_the_filter_with_its_width() {
+fn files_record_the_filter_with_its_width() {
     let folder = Folder::new();
     for (written_as, recorded) in [
         ("\"center\"", "center"),
@@ -148,17 +148,18 @@ fn files_say_the_filter_with_its_width() {
         ("\"blackman-harris\"", "blackman-harris radius 1.5"),
         ("{ gaussian = { sigma = 0.4 } }", "gaussian sigma 0.4"),
     ] {
-        let image = written(&folder, &SCENE.replace("height = 4", &format!("height = 4\nfilter = {written_as}")), &[]);
+        let image =
+            read_output(&folder, &SCENE.replace("height = 4", &format!("height = 4\nfilter = {written_as}")), &[]);
         let found = image.layer_data.attributes.other.get(&Text::from("render/filter")).cloned();
         assert_eq!(found, Some(AttributeValue::Text(Text::from(recorded))));
     }
 }
 
 #[test]
-fn files_say_the_lens_in_meters_and_millimeters() {
+fn files_record_the_lens_in_meters_and_millimeters() {
     let folder = Folder::new();
-    let said = |scene: &str| {
-        let attributes = written(&folder, scene, &[]).layer_data.attributes;
+    let lens_attributes = |scene: &str| {
+        let attributes = read_output(&folder, scene, &[]).layer_data.attributes;
         let other = |name: &str| attributes.other.get(&Text::from(name)).cloned();
         let number = |name: &str| match other(name) {
             Some(AttributeValue::F32(number)) => Some(number),
@@ -173,18 +174,18 @@ fn files_say_the_lens_in_meters_and_millimeters() {
         let found = f64::from(found.expect("it is said"));
         assert!((found / expected - 1.0).abs() < 1e-6, "{found} for {expected}");
     };
-    assert_eq!(said(SCENE), (None, [None; 2], None, None, None));
+    assert_eq!(lens_attributes(SCENE), (None, [None; 2], None, None, None));
 
     // A view of 90 degrees: the focal length is half the height of the sensor, which is half as high as wide.
     let sensor = SCENE.replace("= 90", "= 90\nsensor_width = 36\nnear = 0.5");
     let millimeters = Some(AttributeValue::FloatVec2(Vec2(36.0, 18.0)));
-    assert_eq!(said(&sensor), (millimeters.clone(), [Some(9.0), None], None, None, Some(0.5)));
+    assert_eq!(lens_attributes(&sensor), (millimeters.clone(), [Some(9.0), None], None, None, Some(0.5)));
 
     // A lens 2 cm across, focused at 0.9 m: 1 / f = 1 / 9 mm + 1 / 900 mm.
     let lens = sensor.replace("near = 0.5", "lens = { radius = 1, focus_distance = 90 }");
-    assert_eq!(said(&lens), (millimeters.clone(), [Some(9.0), None], None, None, None));
+    assert_eq!(lens_attributes(&lens), (millimeters.clone(), [Some(9.0), None], None, None, None));
     let (found, [pinhole, effective], aperture, focus, _) =
-        said(&lens.replace("[render]\n", "[render]\nmeters_per_unit = 0.01\n"));
+        lens_attributes(&lens.replace("[render]\n", "[render]\nmeters_per_unit = 0.01\n"));
     assert_eq!((found, pinhole), (millimeters, Some(9.0)));
     let focal_length = 1.0 / (1.0 / 9.0 + 1.0 / 900.0);
     near(effective, focal_length);
@@ -192,6 +193,7 @@ fn files_say_the_lens_in_meters_and_millimeters() {
     near(focus, 0.9);
 
     let far = lens.replace("focus_distance = 90", "focus_distance = inf").replace("sensor_width = 36\n", "");
-    let (found, lengths, aperture, focus, _) = said(&far.replace("[render]\n", "[render]\nmeters_per_unit = 0.01\n"));
+    let (found, lengths, aperture, focus, _) =
+        lens_attributes(&far.replace("[render]\n", "[render]\nmeters_per_unit = 0.01\n"));
     assert_eq!((found, lengths, aperture, focus), (None, [None; 2], None, Some(f32::INFINITY)));
 }

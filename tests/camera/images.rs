@@ -4,7 +4,7 @@ use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::trace::{Transport, prepare, render};
 
-use crate::support::scenes::{EVERY_BRANCH, SPLITTING, environment, film_of, image, scene};
+use crate::support::scenes::{EVERY_BRANCH, SPLITTING, environment, film_of, render_film, scene};
 
 fn view(camera: &str, film: &str, samples: u32) -> String {
     format!(
@@ -43,7 +43,8 @@ fn a_point_out_of_focus_becomes_a_disc_of_the_size_that_the_thin_lens_gives() {
             "{LAMP}[[object]]\nshape.disc = {{ center = [0, 0, {:?}], normal = [0, 0, 1], radius = {spot} }}\nmaterial = \"lamp\"\n",
             -depth
         );
-        let (film, _) = image(&(view(&lens, &format!("width = {side}\nheight = {side}"), 768) + &lamp), SPLITTING);
+        let (film, _) =
+            render_film(&(view(&lens, &format!("width = {side}\nheight = {side}"), 768) + &lamp), SPLITTING);
         let pixel = 1.5 * blur / f64::from(side);
         for variance in variances(&film) {
             // A disc of diameter D has the variance D^2 / 16. The lamp is such a disc, too. A pixel of side h adds h^2
@@ -64,24 +65,24 @@ fn what_lies_in_the_plane_in_focus_is_as_sharp_as_through_a_pinhole() {
     let quad = format!(
         "{LAMP}[[object]]\nshape.quad = {{ center = [0.13, 0.07, -5], u = [0.9, 0.2, 0], v = [-0.1, 0.7, 0] }}\nmaterial = \"lamp\"\n"
     );
-    let through = |lens: &str| {
+    let film_through = |lens: &str| {
         let camera = format!("vertical_fov = 40\nshift = [0.02, -0.03]\n{lens}");
-        image(&(view(&camera, "width = 48\nheight = 32\nfilter = \"center\"", 32) + &quad), SPLITTING).0
+        render_film(&(view(&camera, "width = 48\nheight = 32\nfilter = \"center\"", 32) + &quad), SPLITTING).0
     };
     let rgb = |film: &Film| film.pixels.iter().map(|pixel| pixel.rgb).collect::<Vec<_>>();
-    let pinhole = rgb(&through(""));
-    assert_eq!(rgb(&through("lens = { radius = 0.3, focus_distance = 5 }")), pinhole);
-    assert_ne!(rgb(&through("lens = { radius = 0.3, focus_distance = 4 }")), pinhole);
+    let pinhole = rgb(&film_through(""));
+    assert_eq!(rgb(&film_through("lens = { radius = 0.3, focus_distance = 5 }")), pinhole);
+    assert_ne!(rgb(&film_through("lens = { radius = 0.3, focus_distance = 4 }")), pinhole);
 }
 
 #[test]
-fn rays_that_start_inside_of_a_body_know_it() {
+fn rays_that_start_inside_a_body_know_its_medium() {
     // The plane of the view cuts an absorbing ball of index 1. The camera's own position lies beside it.
     let ball = "[material.fog]\ndielectric = { index = 1, absorption = 0.7 }\n[[object]]\n\
                 shape.sphere = { center = [1.5, 0, 0], radius = 1 }\nmaterial = \"fog\"\n";
     let camera = "projection = \"orthographic\"\nheight = 2";
     let film = "width = 60\nheight = 20\nfilter = \"center\"";
-    let (film, report) = image(&(view(camera, film, 1) + ball + &environment(1.0)), EVERY_BRANCH);
+    let (film, report) = render_film(&(view(camera, film, 1) + ball + &environment(1.0)), EVERY_BRANCH);
     assert_eq!(report.unmatched, 0);
     for y in 0..20 {
         for x in 0..60 {
@@ -105,7 +106,7 @@ fn a_lens_that_dips_into_a_body_starts_its_rays_on_either_side() {
         );
         let camera = "vertical_fov = 1e-6\nlens = { radius = 0.5, focus_distance = inf }";
         let film = "width = 1\nheight = 1\nfilter = \"center\"";
-        let (film, report) = image(&(view(camera, film, 4096) + &fog + &environment(1.0)), SPLITTING);
+        let (film, report) = render_film(&(view(camera, film, 4096) + &fog + &environment(1.0)), SPLITTING);
         assert_eq!(report.unmatched, 0);
         // The fraction of a disk beyond a chord.
         let chord = begin / 0.5;
@@ -122,7 +123,7 @@ fn no_filter_changes_the_mean_of_an_even_image() {
     let filters = ["\"box\"", "\"center\"", "\"tent\"", "\"gaussian\"", "\"blackman-harris\""];
     for filter in filters.into_iter().chain(["{ tent = { radius = 2 } }", "{ gaussian = { sigma = 1.5 } }"]) {
         let film = format!("width = 5\nheight = 4\nfilter = {filter}");
-        let (film, _) = image(&(view("vertical_fov = 40", &film, 16) + &environment(1.0)), SPLITTING);
+        let (film, _) = render_film(&(view("vertical_fov = 40", &film, 16) + &environment(1.0)), SPLITTING);
         assert!(film.pixels.iter().all(|pixel| pixel.rgb == film.pixels[0].rgb), "{filter}");
         assert!((film.pixels[0].rgb[1] - 1.0).abs() <= 4.0 * f32::EPSILON, "{filter}: {:?}", film.pixels[0].rgb);
     }
@@ -136,7 +137,7 @@ fn an_edge_through_a_wide_filter_is_the_integral_of_the_filter() {
         "{LAMP}[[object]]\nshape.quad = {{ center = [50, 0, -1], u = [50, 0, 0], v = [0, 50, 0] }}\nmaterial = \"lamp\"\n"
     );
     let film = "width = 7\nheight = 1\nfilter = { tent = { radius = 2 } }";
-    let (film, _) = image(&(view("vertical_fov = 10", film, 4096) + &wall), SPLITTING);
+    let (film, _) = render_film(&(view("vertical_fov = 10", film, 4096) + &wall), SPLITTING);
     for (k, expected) in [0.0, 0.0, 0.125, 0.5, 0.875, 1.0, 1.0].into_iter().enumerate() {
         let found = f64::from(film.at(k as u32, 0).rgb[1]);
         // The strata along the axis have a size of 1 / 4096.

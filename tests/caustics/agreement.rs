@@ -8,7 +8,7 @@ use abbe::spectrum::Curve;
 use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 
 use crate::support::larger::larger;
-use crate::support::scenes::{SPLITTING, films_of, moments, object, scene, standard_errors};
+use crate::support::scenes::{SPLITTING, films_of, mean_and_variance, object, scene, sigma_limit};
 
 /// Pixels along each side of the images, and blocks along each side that are compared.
 const SIDE: usize = 24;
@@ -16,7 +16,7 @@ const BLOCKS: usize = 4;
 const SEEDS: u64 = 16;
 
 /// Returns the camera and the film. `film` may add a filter.
-pub fn seen_by(camera: &str, film: &str) -> String {
+pub fn camera_and_film(camera: &str, film: &str) -> String {
     format!("[camera]\n{camera}\n[film]\nwidth = {SIDE}\nheight = {SIDE}\n{film}\n")
 }
 
@@ -30,7 +30,7 @@ pub fn glass(text: &str) -> String {
 }
 
 /// Compiles a scene and returns it with the method that is planned for it.
-pub fn with_method(text: &str) -> (Scene<Curve>, Method) {
+pub fn scene_and_method(text: &str) -> (Scene<Curve>, Method) {
     let scene = scene(text);
     let method = plan(&scene).method;
     (scene, method)
@@ -50,8 +50,8 @@ fn films(
     let photons = u64::from(samples) * (SIDE * SIDE) as u64;
     let to = Smoothness::ALL.to_vec();
     let light_pass = pass.then_some(LightPass { photons, lights, openings, to, map });
-    let asked = Method { samples, transport: SPLITTING, light_pass, ..method.clone() };
-    films_of(scene, &asked, 0..seeds)
+    let setup = Method { samples, transport: SPLITTING, light_pass, ..method.clone() };
+    films_of(scene, &setup, 0..seeds)
 }
 
 /// Returns the mean of every block and band, with the variance of that mean.
@@ -65,30 +65,30 @@ pub fn blocks(planned: &(Scene<Curve>, Method), pass: bool, map: Option<MapPasse
         let of_film = |film: &Film| {
             (0..wide * wide).map(|i| f64::from(film.pixels[inside(i)].rgb[band])).sum::<f64>() / (wide * wide) as f64
         };
-        let (mean, variance) = moments(films.iter().map(of_film));
+        let (mean, variance) = mean_and_variance(films.iter().map(of_film));
         found.push((mean, variance / SEEDS as f64));
     }
     found
 }
 
 /// Compares all blocks with the light pass and without it, at the same number of samples.
-pub fn agree(what: &str, text: &str, samples: u32) {
-    agree_with(what, text, [samples; 2], None);
+pub fn assert_agree(what: &str, text: &str, samples: u32) {
+    assert_agree_with_map(what, text, [samples; 2], None);
 }
 
 /// Compares all blocks with the light pass, which may have a map, and without it. The two numbers of samples differ:
 /// the noisier side takes more, which resolves the difference best in the least time.
-pub fn agree_with(what: &str, text: &str, samples: [u32; 2], map: Option<MapPasses>) {
-    agree_of(what, &with_method(text), samples, map);
+pub fn assert_agree_with_map(what: &str, text: &str, samples: [u32; 2], map: Option<MapPasses>) {
+    assert_methods_agree(what, &scene_and_method(text), samples, map);
 }
 
 /// Compares all blocks of a scene under a given method with the light pass and without it.
-pub fn agree_of(what: &str, planned: &(Scene<Curve>, Method), samples: [u32; 2], map: Option<MapPasses>) {
+pub fn assert_methods_agree(what: &str, planned: &(Scene<Curve>, Method), samples: [u32; 2], map: Option<MapPasses>) {
     let with = blocks(planned, true, map, samples[0]);
     let without = blocks(planned, false, None, samples[1]);
     // Means of 16 films have the tails of Student's t with 30 degrees of freedom. So far out they are 1.25 times as
     // wide as those of the normal distribution.
-    let limit = 1.25 * standard_errors(with.len());
+    let limit = 1.25 * sigma_limit(with.len());
     let (mut worst, mut squares, mut quieter) = (0.0_f64, 0.0, 0);
     for (a, b) in with.iter().zip(&without) {
         let rounding = 1e-6 * (a.0 + b.0);
@@ -124,19 +124,19 @@ pub const BALL: &str = "sphere = { center = [0, 1.5, 0], radius = 1 }";
 fn a_floor_in_water_that_the_camera_does_not_see() {
     let water = object("glass", "cube = { center = [0, 0, 0], size = 2 }") + "visible_to_camera = false\n";
     let lamp = object("lamp", "sphere = { center = [0, 4, 0], radius = 0.5 }");
-    let text = seen_by(ABOVE, "") + FLOOR + &glass("index = 1.33, absorption = 0.5") + &water + LAMP + &lamp;
-    agree_with("a floor in hidden water", &text, [8, 72], None);
+    let text = camera_and_film(ABOVE, "") + FLOOR + &glass("index = 1.33, absorption = 0.5") + &water + LAMP + &lamp;
+    assert_agree_with_map("a floor in hidden water", &text, [8, 72], None);
 }
 
 #[test]
 fn a_glass_ball_under_a_round_lamp() {
-    let text = seen_by(ABOVE, "")
+    let text = camera_and_film(ABOVE, "")
         + FLOOR
         + LAMP
         + &glass("index = 1.5")
         + &object("glass", BALL)
         + &object("lamp", "sphere = { center = [0, 7, 0], radius = 1 }");
-    agree_with("ball", &text, BALL_SAMPLES, None);
+    assert_agree_with_map("ball", &text, BALL_SAMPLES, None);
 }
 
 /// Squares of three brightnesses on lamps of every kind, each in a scene of its own.
@@ -161,12 +161,12 @@ fn a_glass_ball_under_lamps_that_show_patterns() {
         ),
     ];
     for (number, lamp) in lamps.iter().enumerate() {
-        let text = seen_by(ABOVE, "") + FLOOR + shown + &glass("index = 1.5") + &object("glass", BALL) + lamp;
-        agree_with(&format!("ball under pattern {number}"), &text, BALL_SAMPLES, None);
+        let text = camera_and_film(ABOVE, "") + FLOOR + shown + &glass("index = 1.5") + &object("glass", BALL) + lamp;
+        assert_agree_with_map(&format!("ball under pattern {number}"), &text, BALL_SAMPLES, None);
     }
     // Instances of a lamp with uniform radiance.
-    let text = seen_by(ABOVE, "") + FLOOR + LAMP + &glass("index = 1.5") + &object("glass", BALL) + &lamps[6];
-    agree_with("ball under two of a kind", &text, BALL_SAMPLES, None);
+    let text = camera_and_film(ABOVE, "") + FLOOR + LAMP + &glass("index = 1.5") + &object("glass", BALL) + &lamps[6];
+    assert_agree_with_map("ball under two of a kind", &text, BALL_SAMPLES, None);
 }
 
 /// A sky of three bright places and a dim rest, which photons and camera paths share.
@@ -185,20 +185,20 @@ fn l11_a_glass_ball_under_an_image_of_the_sky_with_lamps_in_it() {
         "[[light]]\nenvironment = {{ radiance = {{ image = {file:?}, scale = 0.5 }}, \
          transform = [{{ rotate = {{ axis = [0.2, 1, 0], degrees = 40 }} }}] }}\n"
     );
-    let text = seen_by(ABOVE, "") + FLOOR + &glass("index = 1.5") + &object("glass", BALL) + &sky;
-    agree("a ball under a sky", &text, 8);
+    let text = camera_and_film(ABOVE, "") + FLOOR + &glass("index = 1.5") + &object("glass", BALL) + &sky;
+    assert_agree("a ball under a sky", &text, 8);
     let cup = object("glass", "cube = { center = [0, 0.7, 0], size = 1 }");
     let prism = "[material.glass]\ndielectric = { index = \"N-SF11\" }\n";
-    agree("a cube of N-SF11 under a sky", &(seen_by(ABOVE, "") + FLOOR + prism + &cup + &sky), 8);
+    assert_agree("a cube of N-SF11 under a sky", &(camera_and_film(ABOVE, "") + FLOOR + prism + &cup + &sky), 8);
     let camera = "position = [2.5, 3.5, 2.5]\nlook_at = [0, 0.5, 0]\nvertical_fov = 30";
     let map = Some(MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 });
-    let text = seen_by(camera, "") + FLOOR + &glass("index = 1.5") + &object("glass", BALL) + &sky;
-    agree_with("a ball under a sky, gathered", &text, [4, 32], map);
+    let text = camera_and_film(camera, "") + FLOOR + &glass("index = 1.5") + &object("glass", BALL) + &sky;
+    assert_agree_with_map("a ball under a sky, gathered", &text, [4, 32], map);
 }
 
 #[test]
 fn a_mirror_beside_a_lamp_that_lights_the_floor_as_well() {
-    let text = seen_by(ABOVE, "filter = \"mitchell\"")
+    let text = camera_and_film(ABOVE, "filter = \"mitchell\"")
         + FLOOR
         + LAMP
         + "[material.mirror]\nmirror = { reflectance = { rgb = [0.9, 0.8, 0.5] } }\n\
@@ -206,43 +206,44 @@ fn a_mirror_beside_a_lamp_that_lights_the_floor_as_well() {
         + &object("mirror", "quad = { center = [-1, 0.7, 0], u = [0.2, 0.6, 0], v = [0, 0, 0.8] }")
         + &object("silver", "sphere = { center = [0.6, 0.4, -0.9], radius = 0.4 }")
         + &object("lamp", "quad = { center = [1.5, 2, 0], u = [0.4, 0, 0], v = [0, 0, 0.4] }");
-    agree("mirror", &text, 16);
+    assert_agree("mirror", &text, 16);
 }
 
 #[test]
 fn a_prism_whose_wavelengths_part() {
     let prism = "mesh = { points = [[-0.6, 0.4, -0.6], [0.6, 0.4, -0.6], [0, 1.4, -0.6], [-0.6, 0.4, 0.6], [0.6, 0.4, 0.6], \
                  [0, 1.4, 0.6]], faces = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]] }";
-    let text = seen_by(ABOVE, "")
+    let text = camera_and_film(ABOVE, "")
         + "[render]\nmodel = \"hero\"\n"
         + FLOOR
         + LAMP
         + &glass("index = \"N-SF11\"")
         + &object("glass", prism)
         + &object("lamp", "disc = { center = [-2, 2.5, 0], normal = [2, -2, 0], radius = 0.6 }");
-    agree("prism", &text, 16);
+    assert_agree("prism", &text, 16);
 }
 
 #[test]
 fn absorbing_water_in_a_glass_with_a_lamp_in_the_sky() {
-    let text =
-        seen_by("position = [2.5, 3.5, 2.5]\nlook_at = [0, 0, 0]\nprojection = \"orthographic\"\nheight = 2.4", "")
-            + FLOOR
-            + &glass("index = 1.5, priority = 1")
-            + "[material.water]\ndielectric = { index = 1.33, absorption = { rgb = [1.5, 0.4, 0.2] } }\n\
+    let text = camera_and_film(
+        "position = [2.5, 3.5, 2.5]\nlook_at = [0, 0, 0]\nprojection = \"orthographic\"\nheight = 2.4",
+        "",
+    ) + FLOOR
+        + &glass("index = 1.5, priority = 1")
+        + "[material.water]\ndielectric = { index = 1.33, absorption = { rgb = [1.5, 0.4, 0.2] } }\n\
            [material.hollow]\ndielectric = { index = 1.0, priority = 2 }\n"
-            + &object("glass", "sphere = { center = [0, 0.9, 0], radius = 0.8 }")
-            + &object("hollow", "sphere = { center = [0, 0.9, 0], radius = 0.7 }")
-            + &object("water", "cube = { center = [0.3, 0.9, 0], size = [1.4, 0.5, 0.5] }")
-            + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 30, irradiance = 3 }\n";
-    agree("water", &text, 16);
+        + &object("glass", "sphere = { center = [0, 0.9, 0], radius = 0.8 }")
+        + &object("hollow", "sphere = { center = [0, 0.9, 0], radius = 0.7 }")
+        + &object("water", "cube = { center = [0.3, 0.9, 0], size = [1.4, 0.5, 0.5] }")
+        + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 30, irradiance = 3 }\n";
+    assert_agree("water", &text, 16);
 }
 
 /// An infinite plane transmits some of the sunlight to a ball below it. Another ball is above it.
 #[test]
 fn balls_in_the_sun_below_a_plane_with_holes_and_one_above_it() {
     let over = |material: &str| {
-        seen_by("position = [1.2, 2.4, 2.5]\nlook_at = [-0.5, 0, 0]\nvertical_fov = 50", "")
+        camera_and_film("position = [1.2, 2.4, 2.5]\nlook_at = [-0.5, 0, 0]\nvertical_fov = 50", "")
             + "[material.floor]\ndiffuse = { reflectance = 0.8 }\n"
             + &object("floor", "quad = { center = [0, 0, 0], u = [4, 0, 0], v = [0, 0, -4] }")
             + "[material.paper]\ndiffuse = { reflectance = 0.3 }\n"
@@ -253,15 +254,15 @@ fn balls_in_the_sun_below_a_plane_with_holes_and_one_above_it() {
             + &object("glass", "sphere = { center = [0.9, 4.2, 0], radius = 0.7 }")
             + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 30, irradiance = 3 }\n"
     };
-    agree("below a mask", &over("mask = { material = \"paper\", opacity = 0.5 }"), 16);
-    agree("below a pane without end", &over("thin = { index = 1.5 }"), 16);
-    agree("below water without end", &over("dielectric = { index = 1.33 }"), 16);
+    assert_agree("below a mask", &over("mask = { material = \"paper\", opacity = 0.5 }"), 16);
+    assert_agree("below a pane without end", &over("thin = { index = 1.5 }"), 16);
+    assert_agree("below water without end", &over("dielectric = { index = 1.33 }"), 16);
 }
 
 #[test]
 fn panes_and_boxes_seen_through_a_lens() {
     let lens = "lens = { radius = 0.2, focus_distance = 4 }\nshift = [0.1, -0.2]\nnear = 0.5";
-    let text = seen_by(&format!("{ABOVE}\n{lens}"), "filter = { gaussian = { sigma = 0.7 } }")
+    let text = camera_and_film(&format!("{ABOVE}\n{lens}"), "filter = { gaussian = { sigma = 0.7 } }")
         + FLOOR
         + LAMP
         + &glass("index = { rgb = [1.5, 1.55, 1.6] }")
@@ -269,12 +270,12 @@ fn panes_and_boxes_seen_through_a_lens() {
         + &object("pane", "quad = { center = [-0.5, 1, 0], u = [0.5, 0.2, 0], v = [0, 0, 0.6] }")
         + &object("glass", "cube = { center = [0.6, 0.5, 0.2], size = [0.5, 0.4, 0.7] }")
         + &object("lamp", "cube = { center = [0, 3, 0], size = 0.8 }");
-    agree("panes", &text, 16);
+    assert_agree("panes", &text, 16);
 }
 
 #[test]
 fn a_bulb_whose_lamp_is_inside_and_a_camera_that_sees_all_around() {
-    let text = seen_by(
+    let text = camera_and_film(
         "position = [0.2, 1.1, 0.9]\nlook_at = [0, 1, 0]\nprojection = \"equirectangular\"",
         "filter = { tent = { radius = 1.5 } }",
     ) + FLOOR
@@ -288,14 +289,14 @@ fn a_bulb_whose_lamp_is_inside_and_a_camera_that_sees_all_around() {
         + &object("hollow", "sphere = { center = [0, 1, 0], radius = 0.42 }")
         + &object("glass", "sphere = { center = [1, 0.5, 0.4], radius = 0.3 }")
         + &object("lamp", "sphere = { center = [0, 1, 0], radius = 0.25 }");
-    agree("bulb", &text, 32);
+    assert_agree("bulb", &text, 32);
 }
 
 #[test]
 fn a_camera_under_water_and_a_lamp_out_of_round() {
     let lamp = "[[object]]\nmaterial = \"lamp\"\nshape.sphere = { center = [0, 0, 0], radius = 0.4 }\n\
                 transform = [{ scale = [1, 0.4, 2] }, { translate = [0.5, 3, 0] }]\n";
-    let text = seen_by("position = [0.8, 0.8, 1.5]\nlook_at = [0, 0, 0]\nvertical_fov = 50", "")
+    let text = camera_and_film("position = [0.8, 0.8, 1.5]\nlook_at = [0, 0, 0]\nvertical_fov = 50", "")
         + "[render]\nmax_bounces = 5\n"
         + FLOOR
         + LAMP
@@ -304,5 +305,5 @@ fn a_camera_under_water_and_a_lamp_out_of_round() {
         + &object("water", "cube = { center = [0, 0.5, 0], size = [5, 1.6, 5] }")
         + &object("air", "sphere = { center = [-0.2, 0.7, 0], radius = 0.3 }")
         + lamp;
-    agree("under water", &text, 32);
+    assert_agree("under water", &text, 32);
 }

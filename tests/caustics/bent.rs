@@ -7,7 +7,7 @@ use crate::polarization::stokes_vectors;
 use crate::support::scenes::{SPLITTING, assert_near, body, method, quad, scene};
 
 /// A triangle of some material with a tilted normal, whose S0 to S3 a camera sees.
-struct Seen {
+struct TiltedTriangle {
     camera: String,
     material: &'static str,
 }
@@ -19,7 +19,7 @@ struct Beam {
 }
 
 /// Returns a square perpendicular to a direction, with sides of twice `half`.
-fn across(center: DVec3, direction: DVec3, half: f64) -> String {
+fn square_across(center: DVec3, direction: DVec3, half: f64) -> String {
     let u = direction.cross(DVec3::Z).normalize();
     quad(center, u * half, direction.cross(u) * half)
 }
@@ -31,12 +31,12 @@ fn sun(toward: DVec3) -> String {
 
 /// Returns a perfect mirror and a sun whose light it sends to the triangle from the direction `toward`. The sun is
 /// below the triangle.
-fn mirrored(toward: DVec3) -> String {
+fn mirrored_sun(toward: DVec3) -> String {
     let below = DVec3::new(-toward.y, toward.x, -0.5).normalize();
-    body("mirror", "mirror = {}", &[&across(toward * 2.0, (below - toward).normalize(), 0.6)]) + &sun(below)
+    body("mirror", "mirror = {}", &[&square_across(toward * 2.0, (below - toward).normalize(), 0.6)]) + &sun(below)
 }
 
-impl Seen {
+impl TiltedTriangle {
     /// Returns the Stokes vector relative to the S0 of the same render with light treated as unpolarized. All photons
     /// carry the same flux.
     fn stokes(&self, rest: &str, light_pass: Option<&LightPass>) -> [f64; 4] {
@@ -47,7 +47,7 @@ impl Seen {
             "mesh = {{ points = [[-1, -1, 0], [1, -1, 0], [0, 1, 0]], faces = [[0, 1, 2]], \
              normals = [{normal}, {normal}, {normal}] }}"
         );
-        let of = |polarization: Polarizing, stokes: &str| {
+        let render_polarized = |polarization: Polarizing, stokes: &str| {
             let text =
                 format!("camera = {{ {camera} }}\nfilm = {{ width = 1, height = 1, filter = \"box\"{stokes} }}\n")
                     + &body("rough", material, &[&mesh])
@@ -58,16 +58,16 @@ impl Seen {
                 Method { samples: 4, polarization, light_pass, diffuse_bounces: 1, ..method(&scene, SPLITTING) };
             render(&prepare(&scene, method), &|_| ()).0
         };
-        let averaged = f64::from(of(Polarizing::Averaged, "").pixels[0].rgb[1]);
+        let averaged = f64::from(render_polarized(Polarizing::Averaged, "").pixels[0].rgb[1]);
         assert!(averaged > 1e-6, "{camera}, {material}: {averaged}");
-        stokes_vectors(&of(Polarizing::Traced, ", stokes = true")).map(|part| part[1] / averaged)
+        stokes_vectors(&render_polarized(Polarizing::Traced, ", stokes = true")).map(|part| part[1] / averaged)
     }
 
     fn assert_photons_bring(&self, Beam { toward, sheets }: &Beam) {
         let photons =
             LightPass { photons: 1000, lights: vec![0], openings: Vec::new(), to: Smoothness::ALL.to_vec(), map: None };
         let expected = self.stokes(&(sheets.clone() + &sun(*toward)), None);
-        let found = self.stokes(&(sheets.clone() + &mirrored(*toward)), Some(&photons));
+        let found = self.stokes(&(sheets.clone() + &mirrored_sun(*toward)), Some(&photons));
         let what = format!("{} seen by {}, from {toward}", self.material, self.camera);
         assert_near(found, expected, 1e-5, &what);
     }
@@ -84,16 +84,20 @@ fn photons_on_bent_normals_are_polarized_as_a_sun_is() {
     {
         for camera in [above, low] {
             for filter in ["", ", polarizer = { axis = 30 }"] {
-                let seen = Seen { camera: format!("{camera}{filter}"), material };
+                let seen = TiltedTriangle { camera: format!("{camera}{filter}"), material };
                 for toward in [[0.9, 0.3, 0.15], [0.5, 0.9, 0.2], [0.9, -0.2, 0.3], [-0.7, -0.2, 0.4]] {
                     let toward = DVec3::from(toward).normalize();
                     let axis = (toward.cross(DVec3::Z).normalize() + DVec3::Z * 0.7).normalize();
                     let axis = format!("axis = [{:?}, {:?}, {:?}]", axis.x, axis.y, axis.z);
                     let plain = String::new();
-                    let linear =
-                        body("linear", &format!("polarizer = {{ {axis} }}"), &[&across(toward * 1.3, toward, 0.8)]);
+                    let linear = body(
+                        "linear",
+                        &format!("polarizer = {{ {axis} }}"),
+                        &[&square_across(toward * 1.3, toward, 0.8)],
+                    );
                     let retarder = "retarder = { axis = [0, 0, 1], retardance = 70 }";
-                    let elliptic = linear.clone() + &body("retarder", retarder, &[&across(toward * 1.2, toward, 0.8)]);
+                    let elliptic =
+                        linear.clone() + &body("retarder", retarder, &[&square_across(toward * 1.2, toward, 0.8)]);
                     for sheets in [plain, linear, elliptic] {
                         seen.assert_photons_bring(&Beam { toward, sheets });
                     }
@@ -104,7 +108,7 @@ fn photons_on_bent_normals_are_polarized_as_a_sun_is() {
 }
 
 /// Returns a floor between a board and a wall of rough metal with bent normals, and a lamp in front of the wall.
-fn beside_a_bent_wall() -> String {
+fn floor_beside_bent_wall() -> String {
     let wall = "mesh = { points = [[0, -2, 0], [0, 2, 0], [0, 2, 2], [0, -2, 2]], faces = [[0, 1, 2], [0, 2, 3]], \
                 normals = [[0.4, -0.7, -0.5], [0.4, 0.7, -0.5], [0.4, 0.7, 0.5], [0.4, -0.7, 0.5]] }";
     "camera = { position = [1, 0, 9], look_at = [1, 0, 0], projection = \"orthographic\", height = 2 }\n\
@@ -125,15 +129,16 @@ fn beside_a_bent_wall() -> String {
 /// The wall polarizes unpolarized light, to which diffuse surfaces are insensitive.
 #[test]
 fn light_paths_over_bent_normals_are_as_bright_as_without_polarization() {
-    let scene = scene(&beside_a_bent_wall());
-    let of = |polarization, light_vertices| {
+    let scene = scene(&floor_beside_bent_wall());
+    let render_polarized = |polarization, light_vertices| {
         let method =
             Method { samples: 16, polarization, light_vertices, diffuse_bounces: 3, ..method(&scene, SPLITTING) };
         let film = render(&prepare(&scene, method), &|_| ()).0;
         film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).collect::<Vec<_>>()
     };
-    let [averaged, traced] = [Polarizing::Averaged, Polarizing::Traced].map(|polarization| of(polarization, true));
-    assert!(averaged != of(Polarizing::Averaged, false), "light paths did something");
+    let [averaged, traced] =
+        [Polarizing::Averaged, Polarizing::Traced].map(|polarization| render_polarized(polarization, true));
+    assert!(averaged != render_polarized(Polarizing::Averaged, false), "light paths did something");
     for (averaged, traced) in averaged.iter().zip(&traced) {
         assert!((averaged - traced).abs() <= 1e-5 * averaged, "{traced} for {averaged}");
     }

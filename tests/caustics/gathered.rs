@@ -3,19 +3,21 @@
 
 use abbe::trace::MapPasses;
 
-use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree_with, blocks, glass, seen_by, with_method};
-use crate::support::scenes::{object, standard_errors};
+use super::agreement::{
+    ABOVE, BALL, FLOOR, LAMP, assert_agree_with_map, blocks, camera_and_film, glass, scene_and_method,
+};
+use crate::support::scenes::{object, sigma_limit};
 
 /// A map with a radius so small that its blur moves nothing between blocks that these samples could resolve.
 pub const NARROW: MapPasses = MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 };
 
-fn agree(what: &str, text: &str, samples: [u32; 2]) {
-    agree_with(what, text, samples, Some(NARROW));
+fn assert_agree(what: &str, text: &str, samples: [u32; 2]) {
+    assert_agree_with_map(what, text, samples, Some(NARROW));
 }
 
 /// Returns a ball in front of a leaning mirror.
 pub fn mirror() -> String {
-    seen_by("position = [0, 1.2, 2.5]\nlook_at = [0, 0.8, -2]\nvertical_fov = 40", "")
+    camera_and_film("position = [0, 1.2, 2.5]\nlook_at = [0, 0.8, -2]\nvertical_fov = 40", "")
         + FLOOR
         + LAMP
         + &glass("index = 1.5")
@@ -27,17 +29,17 @@ pub fn mirror() -> String {
 
 #[test]
 fn the_caustic_of_a_ball_seen_in_a_mirror() {
-    agree("mirror", &mirror(), [32; 2]);
+    assert_agree("mirror", &mirror(), [32; 2]);
 }
 
 #[test]
 fn a_caustic_is_as_bright_where_few_places_look_for_photons() {
-    agree_with("few places", &mirror(), [64; 2], Some(MapPasses { chance: 0.25, ..NARROW }));
+    assert_agree_with_map("few places", &mirror(), [64; 2], Some(MapPasses { chance: 0.25, ..NARROW }));
 }
 
 /// Returns a pool whose floor is under water, lit by a lamp beside it.
 fn pool(film: &str) -> String {
-    seen_by(ABOVE, film)
+    camera_and_film(ABOVE, film)
         + FLOOR
         + LAMP
         + "[material.water]\ndielectric = { index = 1.33, absorption = { rgb = [0.5, 0.2, 0.1] } }\n\
@@ -49,17 +51,17 @@ fn pool(film: &str) -> String {
 
 #[test]
 fn the_floor_of_a_pool_seen_through_its_water() {
-    agree("pool", &pool("filter = \"tent\""), [32; 2]);
+    assert_agree("pool", &pool("filter = \"tent\""), [32; 2]);
 }
 
 /// The plan's own radius, on an image whose pixels are as wide as possible: the blur changes no block by a hundredth.
 #[test]
 fn the_bias_of_the_plans_radius_is_less_than_a_hundredth() {
-    let pool = with_method(&pool(""));
+    let pool = scene_and_method(&pool(""));
     let narrow = MapPasses { photons: 2 * NARROW.photons, ..NARROW };
     let wide = MapPasses { radius: 1.0, ..narrow };
     let [narrow, wide] = [narrow, wide].map(|map| blocks(&pool, true, Some(map), 256));
-    let limit = 1.25 * standard_errors(narrow.len());
+    let limit = 1.25 * sigma_limit(narrow.len());
     let (mut moved, mut whole, mut variance) = (0.0, 0.0, 0.0);
     for (a, b) in narrow.iter().zip(&wide) {
         let error = (a.1 + b.1).sqrt();
@@ -76,7 +78,7 @@ fn the_bias_of_the_plans_radius_is_less_than_a_hundredth() {
 
 #[test]
 fn a_caustic_that_lights_a_wall() {
-    let text = seen_by("position = [0, 1, 3]\nlook_at = [0, 1, -2]\nvertical_fov = 40", "")
+    let text = camera_and_film("position = [0, 1, 3]\nlook_at = [0, 1, -2]\nvertical_fov = 40", "")
         + "[render]\ndiffuse_bounces = 2\n"
         + FLOOR
         + LAMP
@@ -87,12 +89,12 @@ fn a_caustic_that_lights_a_wall() {
         + &object("veil", "quad = { center = [0.9, 0.5, 0], u = [0, 0.5, 0], v = [0, 0, 0.8] }")
         + &object("glass", BALL)
         + &object("lamp", "cube = { center = [0, 4, 0], size = 0.8 }");
-    agree("wall", &text, [2, 16]);
+    assert_agree("wall", &text, [2, 16]);
 }
 
 #[test]
 fn a_body_of_many_materials_under_a_dome_of_glass() {
-    let text = seen_by(&format!("{ABOVE}\nlens = {{ radius = 0.1, focus_distance = 4 }}"), "")
+    let text = camera_and_film(&format!("{ABOVE}\nlens = {{ radius = 0.1, focus_distance = 4 }}"), "")
         + "[render]\nmax_bounces = 6\n"
         + FLOOR
         + &glass("index = 1.5, priority = 1")
@@ -106,7 +108,7 @@ fn a_body_of_many_materials_under_a_dome_of_glass() {
         + &object("frost", "sphere = { center = [0.4, 0.5, 0], radius = 0.3 }")
         + &object("both", "cube = { center = [-0.4, 0.4, 0], size = 0.5 }")
         + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 30, irradiance = 3 }\n";
-    agree("dome", &text, [2, 24]);
+    assert_agree("dome", &text, [2, 24]);
 }
 
 /// The radius is given in pixels. Their width grows with the distance from the camera, not from the start of a ray.
@@ -115,7 +117,7 @@ fn photons_are_gathered_as_widely_behind_a_near_plane() {
     let map = MapPasses { radius: 1.0, ..NARROW };
     let [whole, cut] = ["", "\nnear = 1.2"].map(|near| {
         let text = mirror().replace("vertical_fov = 40", &format!("vertical_fov = 40{near}"));
-        blocks(&with_method(&text), true, Some(map), 4)
+        blocks(&scene_and_method(&text), true, Some(map), 4)
     });
     for (a, b) in whole.iter().zip(&cut) {
         assert!((a.0 - b.0).abs() <= 1e-4 * a.0, "{} for {}", b.0, a.0);

@@ -4,7 +4,7 @@ use abbe::film::Film;
 use abbe::plan::{Plan, plan};
 use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 
-use super::agreement::{LAMP, agree, seen_by};
+use super::agreement::{LAMP, assert_agree, camera_and_film};
 use crate::support::run::{Answer, Folder, render};
 use crate::support::scenes::{SPLITTING, film_of, mean_color, object, scene};
 
@@ -93,7 +93,7 @@ fn a_wide_spot_throws_the_caustic_of_a_point_and_a_narrow_one_a_part_of_it() {
 
 /// A parallel beam through a prism onto a screen: the screen receives what Fresnel's equations transmit.
 #[test]
-fn a_beam_through_a_prism_brings_the_screen_the_light_that_fresnel_lets_through() {
+fn a_beam_through_a_prism_brings_to_the_screen_the_light_that_fresnel_predicts() {
     // The beam hits the left face at `incidence` to its normal. The apex points up and everything lies in the plane z =
     // 0.
     let (apex, index) = (30.0_f64.to_radians(), 1.5_f64);
@@ -249,7 +249,11 @@ fn photons_toward_objects_whose_cones_overlap_count_once() {
     let lamp = object("lamp", "sphere = { center = [0.5, 3.5, 0.2], radius = 0.3 }");
     let sun = "[[light]]\nsun = { toward = [1, 1.2, 0.1], irradiance = 2, angular_diameter = 12 }\n";
     let camera = "position = [1.5, 2.5, 3]\nlook_at = [0, 0.2, 0]\nvertical_fov = 40";
-    agree("two balls in one line and a mirror", &(seen_by(camera, "") + &things + LAMP + &lamp + sun), 16);
+    assert_agree(
+        "two balls in one line and a mirror",
+        &(camera_and_film(camera, "") + &things + LAMP + &lamp + sun),
+        16,
+    );
 }
 
 #[test]
@@ -270,38 +274,41 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
             "[[object]]\nname = \"bulb\"\nmaterial = \"lamp\"\nshape.sphere = {{ center = [-1, 3.5, 0], radius = {radius} }}\n"
         )
     };
-    let asks = |extra: String, words: &str| {
+    let assert_photons = |extra: String, words: &str| {
         let plan = room(&extra);
         assert!(plan.method.light_pass.is_some() && because(&plan).contains(words), "{extra}{}", because(&plan));
     };
-    let leaves = |extra: String, words: &str| {
+    let assert_no_photons = |extra: String, words: &str| {
         let plan = room(&extra);
         assert!(plan.method.light_pass.is_none() && because(&plan).contains(words), "{extra}{}", because(&plan));
     };
-    asks(format!("{ball}{point}"), "photons from a point light toward ball");
-    asks(format!("{ball}{}", lamp(0.1)), "photons from bulb (");
-    asks(
+    assert_photons(format!("{ball}{point}"), "photons from a point light toward ball");
+    assert_photons(format!("{ball}{}", lamp(0.1)), "photons from bulb (");
+    assert_photons(
         format!("{ball}[[light]]\nsun = {{ toward = [1, 2, 0], irradiance = 1 }}\n"),
         "photons from the sun (solid angle 6.8e-5 sr)",
     );
-    asks(format!("{ball}{point}{}", lamp(2.0)), "left to chance: caustics from bulb");
-    leaves(point.into(), "no caustics: no surface is smooth");
+    assert_photons(format!("{ball}{point}{}", lamp(2.0)), "left to chance: caustics from bulb");
+    assert_no_photons(point.into(), "no caustics: no surface is smooth");
     let coated = "[material.coat]\nplastic = { reflectance = 0.5, index = 1.5 }\n[[object]]\nmaterial = \"coat\"\n\
                   shape.cube = { center = [2, 0.5, 0], size = 1 }\n";
-    asks(format!("{ball}{coated}{point}"), "photons from a point light toward 2 smooth objects");
-    asks(format!("{coated}{point}"), "photons from a point light toward object ");
+    assert_photons(format!("{ball}{coated}{point}"), "photons from a point light toward 2 smooth objects");
+    assert_photons(format!("{coated}{point}"), "photons from a point light toward object ");
     let frosted = |roughness: f64| {
         let ball = ball.replace("\"glass\"", "\"frosted\"");
         format!("[material.frosted]\ndielectric = {{ index = 1.5, roughness = {roughness} }}\n{ball}{point}")
     };
-    asks(frosted(0.2), "photons from a point light toward ball");
+    assert_photons(frosted(0.2), "photons from a point light toward ball");
     let plan = room(&frosted(0.35));
     let all = because(&plan);
     assert!(all.contains("no caustics: no surface is smooth") && !all.contains("left out: light from point"), "{all}");
-    leaves(format!("{ball}{}", lamp(2.0)), "no photon tracing: rays hit bulb (solid angle ");
+    assert_no_photons(format!("{ball}{}", lamp(2.0)), "no photon tracing: rays hit bulb (solid angle ");
     let screen = "[material.screen]\nemissive = { radiance = { checker = [3, 1] } }\n";
-    asks(format!("{screen}{ball}{}", lamp(0.1).replace("\"lamp\"", "\"screen\"")), "photons from bulb (");
-    leaves(format!("{ball}[[light]]\nenvironment = {{ radiance = 1 }}\n"), "rays find the sky often enough by chance");
+    assert_photons(format!("{screen}{ball}{}", lamp(0.1).replace("\"lamp\"", "\"screen\"")), "photons from bulb (");
+    assert_no_photons(
+        format!("{ball}[[light]]\nenvironment = {{ radiance = 1 }}\n"),
+        "rays find the sky often enough by chance",
+    );
     let folder = tempfile::tempdir().unwrap();
     let sky = |sun: f32, more: &str| {
         let file = folder.path().join(format!("{sun}.exr"));
@@ -309,27 +316,30 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
         exr::prelude::write_rgb_file(&file, 128, 64, at).unwrap();
         format!("{ball}[[light]]\nenvironment = {{ radiance = {{ image = {file:?} }}{more} }}\n")
     };
-    asks(sky(1e4, ""), "photons from the bright parts of the image of the sky (solid angle 1.8e-2 sr) toward ball");
-    leaves(sky(9.0, ""), "rays find the sky often enough by chance");
+    assert_photons(
+        sky(1e4, ""),
+        "photons from the bright parts of the image of the sky (solid angle 1.8e-2 sr) toward ball",
+    );
+    assert_no_photons(sky(9.0, ""), "rays find the sky often enough by chance");
     let polarized = ", polarization = { sun = [0, 1, 1], degree = 0.7 }";
-    leaves(sky(1e4, polarized), "caustics from a polarized image of the sky are left to chance");
+    assert_no_photons(sky(1e4, polarized), "caustics from a polarized image of the sky are left to chance");
     let wall = "[[object]]\nname = \"wall\"\nmaterial = \"mirror\"\nshape.plane = { point = [0, 0, -3], normal = [0, 0, 1] }\n";
-    asks(format!("{wall}{point}"), "from a point light toward wall");
+    assert_photons(format!("{wall}{point}"), "from a point light toward wall");
     let beyond =
         "left to chance: caustics of wall, which is unbounded, far beyond where it is seen; caustics from point";
-    asks(format!("{ball}{wall}{point}"), beyond);
+    assert_photons(format!("{ball}{wall}{point}"), beyond);
     let behind = wall.replace("-3]", "9]");
     let unseen = "wall is unbounded and not seen, so photons cannot be aimed at it; caustics from point";
-    leaves(format!("{behind}{point}"), unseen);
-    asks(
+    assert_no_photons(format!("{behind}{point}"), unseen);
+    assert_photons(
         format!("{ball}{behind}{point}"),
         "left to chance: caustics of wall, which is unbounded and is not seen; caustics from point",
     );
-    leaves(format!("{ball}{point}").replace("0.8, 0]", "-0.8, 0]"), "in sight");
-    leaves(format!("[render]\ncaustics = \"off\"\n{ball}{point}"), "caustics \"off\"");
-    leaves(format!("[render]\ndiffuse_bounces = 0\n{ball}{point}"), "no caustics: with diffuse_bounces 0");
+    assert_no_photons(format!("{ball}{point}").replace("0.8, 0]", "-0.8, 0]"), "in sight");
+    assert_no_photons(format!("[render]\ncaustics = \"off\"\n{ball}{point}"), "caustics \"off\"");
+    assert_no_photons(format!("[render]\ndiffuse_bounces = 0\n{ball}{point}"), "no caustics: with diffuse_bounces 0");
     let pane = "[[object]]\nmaterial = \"glass\"\nshape.cube = { center = [0, 2, 4.5], size = [9, 9, 0.1] }\n";
-    asks(format!("{ball}{pane}{point}"), "photon map: 12 passes of");
+    assert_photons(format!("{ball}{pane}{point}"), "photon map: 12 passes of");
 }
 
 /// In a box lit by a lamp inside a glass ball, pixels are so wide that thousands of photons lie around each place. More

@@ -4,11 +4,11 @@ use abbe::math::DVec2;
 use abbe::plan::plan;
 use abbe::trace::MapPasses;
 
-use super::agreement::{FLOOR, LAMP, agree, agree_with, glass, seen_by};
-use crate::support::scenes::{film_of, moments, object, scene};
+use super::agreement::{FLOOR, LAMP, assert_agree, assert_agree_with_map, camera_and_film, glass};
+use crate::support::scenes::{film_of, mean_and_variance, object, scene};
 
 /// A camera just above the water, with the horizon in sight.
-const ASHORE: &str = "position = [0, 2, 5]\nlook_at = [0, 0.3, 0]\nvertical_fov = 50";
+const SHORE_CAMERA: &str = "position = [0, 2, 5]\nlook_at = [0, 0.3, 0]\nvertical_fov = 50";
 const WATER: [&str; 2] = [
     "plane = { point = [0, 1, 0], normal = [0, 1, 0] }",
     "quad = { center = [30, 1, -20], u = [0, 0, 300], v = [300, 0, 0] }",
@@ -20,39 +20,39 @@ const SUN: &str = "[[light]]\nsun = { toward = [0.6, 1, 0.3], irradiance = 2, an
 fn a_sea_in_the_sun() {
     let map = MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 };
     for water in WATER {
-        let text = seen_by(ASHORE, "")
+        let text = camera_and_film(SHORE_CAMERA, "")
             + FLOOR
             + &glass("index = 1.33, absorption = { rgb = [0.5, 0.2, 0.1] }")
             + &object("glass", water)
             + "[material.stone]\ndiffuse = { reflectance = 0.5 }\n"
             + &object("stone", "sphere = { center = [0.3, 0.9, 0.2], radius = 0.6 }")
             + SUN;
-        agree_with(water, &text, [128; 2], Some(map));
+        assert_agree_with_map(water, &text, [128; 2], Some(map));
     }
 }
 
 /// The caustic on a ball is seen directly.
 #[test]
-fn a_mirror_without_end() {
-    let text = seen_by("position = [0, 1.5, 4]\nlook_at = [0, 0.8, 0]\nvertical_fov = 50", "")
+fn an_infinite_mirror() {
+    let text = camera_and_film("position = [0, 1.5, 4]\nlook_at = [0, 0.8, 0]\nvertical_fov = 50", "")
         + "[material.mirror]\nmirror = { reflectance = 0.9 }\n[material.stone]\ndiffuse = { reflectance = 0.5 }\n"
         + &object("mirror", "plane = { point = [0, 0, 0], normal = [0, 1, 0] }")
         + &object("stone", "sphere = { center = [0, 1, 0], radius = 0.7 }")
         + LAMP
         + &object("lamp", "sphere = { center = [2, 3, 1], radius = 0.6 }")
         + "[[light]]\nenvironment = { radiance = 0.01 }\n";
-    agree("mirror", &text, 64);
+    assert_agree("mirror", &text, 64);
 }
 
 /// The floor of a sea, lit by a sun without extent whose light only photons find, is as bright as Fresnel and Beer
 /// predict, near and far. The radiance at the angle v to the normal is (reflectance / pi) E cos(s) T(s) T(v) / n^2,
 /// times the transmittance of depth / cos(s') + depth / cos(v') of water.
 #[test]
-fn the_floor_of_a_sea_is_as_bright_as_fresnel_and_beer_have_it() {
+fn the_floor_of_a_sea_is_as_bright_as_fresnel_and_beer_predict() {
     const N: f64 = 1.33;
     const ABSORPTION: f64 = 0.3;
     // Returns the cosine inside the water and the transmitted fraction.
-    let crosses = |cos: f64| {
+    let refract = |cos: f64| {
         let inside = (1.0 - (1.0 - cos * cos) / (N * N)).sqrt();
         let [s, p] = [(cos - N * inside) / (cos + N * inside), (N * cos - inside) / (N * cos + inside)];
         (inside, 1.0 - 0.5 * (s * s + p * p))
@@ -68,16 +68,16 @@ fn the_floor_of_a_sea_is_as_bright_as_fresnel_and_beer_have_it() {
             + "[[light]]\nsun = { toward = [0.6, 0.8, 0], irradiance = 2000, angular_diameter = 0 }\n";
         let scene = scene(&text);
         let film = film_of(&scene, plan(&scene).method);
-        let (sun_inside, sun_crosses) = crosses(0.8);
+        let (sun_inside, sun_crosses) = refract(0.8);
         let ratio = |pixel: usize| {
             let at = DVec2::new((pixel % 40) as f64 + 0.5, (pixel / 40) as f64 + 0.5);
-            let (inside, out) = crosses(-scene.camera.ray(at).direction.y);
+            let (inside, out) = refract(-scene.camera.ray(at).direction.y);
             let left = (-ABSORPTION * (1.0 / sun_inside + 1.0 / inside)).exp();
             let exact = 2.0 / std::f64::consts::PI * 0.8 * sun_crosses * out * left / (N * N);
             f64::from(film.pixels[pixel].rgb[1]) / exact
         };
         for rows in [0..4, 4..8, 8..16, 16..32] {
-            let (mean, variance) = moments((rows.start * 40..rows.end * 40).map(ratio));
+            let (mean, variance) = mean_and_variance((rows.start * 40..rows.end * 40).map(ratio));
             let error = (variance / (40 * rows.len()) as f64).sqrt();
             println!("{water}, rows {rows:?}: {mean:.4} of the exact light, with an error of {error:.4}");
             // Pixels share photons, so their noise is not fully independent.

@@ -1,6 +1,6 @@
 //! Photons and camera paths agree on surfaces of every kind: layers, holes, images, bent normals, rough glass.
 
-use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, agree_with, glass, seen_by};
+use super::agreement::{ABOVE, BALL, FLOOR, LAMP, assert_agree, assert_agree_with_map, camera_and_film, glass};
 use crate::support::scenes::{GROUND, object};
 
 pub const ROUND_LAMP: &str = "sphere = { center = [0, 7, 0], radius = 1 }";
@@ -10,7 +10,7 @@ pub const BENT: &str = "mesh = { points = [[-2, 0, -2], [2, 0, -2], [2, 0, 2], [
 
 #[test]
 fn a_caustic_on_plastic_that_mirrors_it_onto_a_wall() {
-    let text = seen_by(ABOVE, "")
+    let text = camera_and_film(ABOVE, "")
         + "[material.coated]\nplastic = { reflectance = { checker = [0.9, { rgb = [0.2, 0.4, 0.6] }], repeat = 2 } }\n"
         + &object("coated", GROUND)
         + "[material.wall]\ndiffuse = { reflectance = 0.8 }\n"
@@ -19,12 +19,12 @@ fn a_caustic_on_plastic_that_mirrors_it_onto_a_wall() {
         + &glass("index = 1.5")
         + &object("glass", BALL)
         + &object("lamp", ROUND_LAMP);
-    agree("plastic", &text, 16);
+    assert_agree("plastic", &text, 16);
 }
 
 #[test]
 fn a_caustic_through_the_holes_of_sheets_above_and_below_the_glass() {
-    let text = seen_by(ABOVE, "")
+    let text = camera_and_film(ABOVE, "")
         + FLOOR
         + LAMP
         + "[material.grey]\ndiffuse = { reflectance = 0.4 }\n\
@@ -34,14 +34,14 @@ fn a_caustic_through_the_holes_of_sheets_above_and_below_the_glass() {
         + &glass("index = 1.5")
         + &object("glass", BALL)
         + &object("lamp", ROUND_LAMP);
-    agree("holes", &text, 16);
+    assert_agree("holes", &text, 16);
 }
 
 #[test]
 fn a_caustic_on_a_floor_of_bent_normals_and_by_way_of_smoothed_glass() {
     let gem = "mesh = { points = [[1, 1.2, 0], [-0.2, 1.2, 0], [0.4, 1.8, 0], [0.4, 0.6, 0], [0.4, 1.2, 0.6], [0.4, 1.2, -0.6]], \
                faces = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]], smooth = true }";
-    let text = seen_by(ABOVE, "")
+    let text = camera_and_film(ABOVE, "")
         + "[material.floor]\ndiffuse = { reflectance = 0.8 }\n"
         + &object("floor", BENT)
         + LAMP
@@ -49,12 +49,12 @@ fn a_caustic_on_a_floor_of_bent_normals_and_by_way_of_smoothed_glass() {
         + &object("glass", gem)
         + &object("glass", "sphere = { center = [-0.5, 1.2, 0.2], radius = 0.5 }")
         + &object("lamp", ROUND_LAMP);
-    agree_with("bent", &text, [4, 20], None);
+    assert_agree_with_map("bent", &text, [4, 20], None);
 }
 
 #[test]
 fn a_caustic_on_rough_glass_seen_from_both_sides() {
-    let text = seen_by("position = [2.5, 1.5, 2.5]\nlook_at = [0, 0.2, 0]\nvertical_fov = 30", "")
+    let text = camera_and_film("position = [2.5, 1.5, 2.5]\nlook_at = [0, 0.2, 0]\nvertical_fov = 30", "")
         + FLOOR
         + LAMP
         + "[material.frost]\ndielectric = { index = 1.4, roughness = 0.5 }\n"
@@ -62,5 +62,5 @@ fn a_caustic_on_rough_glass_seen_from_both_sides() {
         + &glass("index = 1.5")
         + &object("glass", BALL)
         + &object("lamp", ROUND_LAMP);
-    agree("frost", &text, 32);
+    assert_agree("frost", &text, 32);
 }

@@ -1,7 +1,7 @@
 //! Caustics of nearly smooth surfaces: what polished metal and glossy coats reflect in a narrow lobe, and what frosted
 //! glass refracts.
 
-use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, agree_with, glass, seen_by};
+use super::agreement::{ABOVE, BALL, FLOOR, LAMP, assert_agree, assert_agree_with_map, camera_and_film, glass};
 use super::gathered::NARROW;
 use super::materials::{BENT, ROUND_LAMP};
 use crate::support::scenes::object;
@@ -17,15 +17,16 @@ const MIX: &str = "[material.mirror]\nmirror = { reflectance = 0.9 }\n\
 #[test]
 fn a_ball_under_a_lamp() {
     for (what, material) in [("metal", METAL), ("glossy", GLOSSY), ("mixed", &(GLOSSY.to_owned() + MIX))] {
-        let text = seen_by(ABOVE, "") + FLOOR + LAMP + material + &object(what, BALL) + &object("lamp", ROUND_LAMP);
-        agree(what, &text, 32);
+        let text =
+            camera_and_film(ABOVE, "") + FLOOR + LAMP + material + &object(what, BALL) + &object("lamp", ROUND_LAMP);
+        assert_agree(what, &text, 32);
     }
 }
 
 /// The reflection of each body lands on the others: on matte ones and, from smooth surfaces only, on metal.
 #[test]
 fn all_kinds_in_the_sun_on_a_glossy_floor() {
-    let text = seen_by(ABOVE, "")
+    let text = camera_and_film(ABOVE, "")
         + GLOSSY
         + MIX
         + METAL
@@ -36,16 +37,16 @@ fn all_kinds_in_the_sun_on_a_glossy_floor() {
         + &object("mixed", "cube = { center = [0.6, 0.5, -0.6], size = [0.6, 1, 0.6] }")
         + &object("glass", "sphere = { center = [0.5, 0.4, 0.1], radius = 0.3 }")
         + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 20, irradiance = 3 }\n";
-    agree("all kinds", &text, 32);
+    assert_agree("all kinds", &text, 32);
     let few = |bounces: u32| text.clone() + &format!("[render]\nmax_bounces = {bounces}\n");
-    agree("all kinds, two bounces", &few(2), 32);
-    agree_with("all kinds, gathered", &few(4), [32; 2], Some(NARROW));
+    assert_agree("all kinds, two bounces", &few(2), 32);
+    assert_agree_with_map("all kinds, gathered", &few(4), [32; 2], Some(NARROW));
 }
 
 #[test]
 fn bent_normals_and_a_polarizer_before_the_wall() {
     for material in [METAL, &GLOSSY.replace("glossy", "metal")] {
-        let text = seen_by(ABOVE, "")
+        let text = camera_and_film(ABOVE, "")
             + LAMP
             + material
             + "[material.wall]\ndiffuse = { reflectance = 0.8 }\n[material.sheet]\npolarizer = { axis = [0, 1, 0] }\n"
@@ -53,7 +54,7 @@ fn bent_normals_and_a_polarizer_before_the_wall() {
             + &object("wall", "quad = { center = [-0.9, 0.5, 0], u = [0, 0, 1], v = [0, 0.5, 0] }")
             + &object("sheet", "quad = { center = [-0.7, 0.5, 0.4], u = [0, 0, 0.4], v = [0, 0.5, 0] }")
             + &object("lamp", ROUND_LAMP);
-        agree("bent", &text, 32);
+        assert_agree("bent", &text, 32);
     }
 }
 
@@ -61,7 +62,7 @@ fn bent_normals_and_a_polarizer_before_the_wall() {
 #[test]
 fn a_ball_in_water() {
     for seen in ["", "visible_to_camera = false\n"] {
-        let text = seen_by(ABOVE, "")
+        let text = camera_and_film(ABOVE, "")
             + FLOOR
             + LAMP
             + &glass("index = 1.33")
@@ -71,14 +72,14 @@ fn a_ball_in_water() {
             + &object("metal", "sphere = { center = [0.2, 0.5, 0], radius = 0.3 }")
             + &object("metal", "sphere = { center = [-0.9, 0.4, 0], radius = 0.15 }")
             + &object("lamp", "sphere = { center = [0, 4, 0], radius = 0.8 }");
-        agree("in water", &text, 64);
-        agree_with("in water, gathered", &text, [64; 2], Some(NARROW));
+        assert_agree("in water", &text, 64);
+        assert_agree_with_map("in water, gathered", &text, [64; 2], Some(NARROW));
     }
 }
 
 #[test]
-fn what_metal_throws_is_seen_in_a_mirror() {
-    let text = seen_by("position = [0, 1.2, 2.5]\nlook_at = [0, 0.8, -2]\nvertical_fov = 40", "")
+fn caustics_of_metal_are_seen_in_a_mirror() {
+    let text = camera_and_film("position = [0, 1.2, 2.5]\nlook_at = [0, 0.8, -2]\nvertical_fov = 40", "")
         + FLOOR
         + LAMP
         + METAL
@@ -88,7 +89,7 @@ fn what_metal_throws_is_seen_in_a_mirror() {
         + &object("metal", BALL)
         + &object("glossy", "cube = { center = [1.2, 0.4, 0.3], size = 0.8 }")
         + &object("lamp", "sphere = { center = [0.5, 5, 0], radius = 0.6 }");
-    agree_with("in a mirror", &text, [64; 2], Some(NARROW));
+    assert_agree_with_map("in a mirror", &text, [64; 2], Some(NARROW));
 }
 
 const FROSTED: &str = "[material.frosted]\ndielectric = { index = 1.5, roughness = 0.25 }\n";
@@ -104,21 +105,21 @@ fn frosted_glass() {
         ("tinted", with("absorption = { rgb = [0.2, 1, 2] }, transmittance = 0.9, reflectance = 0.7"), 32),
         ("dispersing", FROSTED.replace("1.5", "\"N-SF11\""), 12),
     ] {
-        let text = seen_by(ABOVE, "")
+        let text = camera_and_film(ABOVE, "")
             + FLOOR
             + LAMP
             + &glass
             + &object("frosted", "cube = { center = [-0.7, 0.36, 0.3], size = 0.7 }")
             + &object("frosted", "sphere = { center = [0.6, 0.5, -0.2], radius = 0.4 }")
             + &object("lamp", "sphere = { center = [0.5, 4, 0], radius = 1 }");
-        agree(what, &text, samples);
+        assert_agree(what, &text, samples);
     }
 }
 
 /// A lamp in a frosted bulb, and liquid with the index of glass in a frosted shell that stands in a pool.
 #[test]
 fn frosted_glass_around_a_lamp_and_in_water() {
-    let bulb = seen_by(ABOVE, "")
+    let bulb = camera_and_film(ABOVE, "")
         + FLOOR
         + LAMP
         + FROSTED
@@ -126,8 +127,8 @@ fn frosted_glass_around_a_lamp_and_in_water() {
         + &object("frosted", "sphere = { center = [0, 1, 0], radius = 0.6 }")
         + &object("air", "sphere = { center = [0, 1, 0], radius = 0.55 }")
         + &object("lamp", "sphere = { center = [0, 1, 0], radius = 0.35 }");
-    agree("bulb", &bulb, 24);
-    let pool = seen_by(ABOVE, "")
+    assert_agree("bulb", &bulb, 24);
+    let pool = camera_and_film(ABOVE, "")
         + FLOOR
         + LAMP
         + FROSTED
@@ -139,18 +140,18 @@ fn frosted_glass_around_a_lamp_and_in_water() {
         + &object("lamp", "sphere = { center = [0, 4, 0], radius = 0.8 }");
     for bounces in [3, 12] {
         let text = pool.clone() + &format!("[render]\nmax_bounces = {bounces}\n");
-        agree_with("in a pool", &text, [16, 32], Some(NARROW));
+        assert_agree_with_map("in a pool", &text, [16, 32], Some(NARROW));
     }
 }
 
 /// The map finds the photons on the floor, close below the glass, and not those on the glass.
 #[test]
 fn a_map_under_frosted_glass_that_nearly_touches_the_floor() {
-    let text = seen_by(ABOVE, "")
+    let text = camera_and_film(ABOVE, "")
         + FLOOR
         + LAMP
         + FROSTED
         + &object("frosted", "cube = { center = [0, 0.301, 0], size = 0.6 }")
         + &object("lamp", "sphere = { center = [0.5, 4, 0], radius = 0.8 }");
-    agree_with("under the glass", &text, [8, 32], Some(NARROW));
+    assert_agree_with_map("under the glass", &text, [8, 32], Some(NARROW));
 }

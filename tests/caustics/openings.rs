@@ -4,7 +4,7 @@ use abbe::light::Opening;
 use abbe::math::{Bounds, DVec3};
 use abbe::trace::{BrightPlace, BrightPlaces, MapPasses, Method};
 
-use super::agreement::{agree_of, glass, seen_by, with_method};
+use super::agreement::{assert_methods_agree, camera_and_film, glass, scene_and_method};
 use crate::support::scenes::{body, environment, object, quad};
 
 /// Returns a room of 6 x 4 x 6 above the floor, with a square hole in the middle of the roof.
@@ -33,8 +33,8 @@ const CAMERA: &str = "position = [1.8, 2.6, 1.8]\nlook_at = [0, 0, 0]\nvertical_
 const BALL: &str = "sphere = { center = [0.2, 1, 0.1], radius = 0.5 }";
 
 /// Returns a scene with a method whose bounces are aimed at the given openings.
-fn aimed(text: &str, openings: &[Opening]) -> (abbe::scene::Scene<abbe::spectrum::Curve>, Method) {
-    let (scene, method) = with_method(text);
+fn scene_aimed_at(text: &str, openings: &[Opening]) -> (abbe::scene::Scene<abbe::spectrum::Curve>, Method) {
+    let (scene, method) = scene_and_method(text);
     let within = Bounds { min: DVec3::new(-3.1, -0.1, -3.1), max: DVec3::new(3.1, 4.1, 3.1) };
     let place = |&Opening { center, half }: &Opening| BrightPlace { center, half, radiance: 1.0 };
     let places = openings.iter().map(place).collect();
@@ -60,7 +60,7 @@ fn a_glass_ball_in_a_room_with_a_hole() {
     let image = sky(folder.path());
     let even = environment(2.0);
     let scene = |light: &str, more: &str| {
-        seen_by(CAMERA, "") + &room(0.5) + &glass("index = 1.5") + &object("glass", BALL) + light + more
+        camera_and_film(CAMERA, "") + &room(0.5) + &glass("index = 1.5") + &object("glass", BALL) + light + more
     };
     let metal = body(
         "metal",
@@ -87,8 +87,8 @@ fn a_glass_ball_in_a_room_with_a_hole() {
         ("a slab in the hole", scene(&even, &about), vec![whole]),
     ];
     for (what, text, openings) in &cases {
-        agree_of(what, &aimed(text, openings), [8, 32], None);
+        assert_methods_agree(what, &scene_aimed_at(text, openings), [8, 32], None);
     }
     let map = Some(MapPasses { count: 8, photons: 8192, radius: 0.1, chance: 1.0 });
-    agree_of("gathered", &aimed(&scene(&even, ""), &[whole]), [8, 32], map);
+    assert_methods_agree("gathered", &scene_aimed_at(&scene(&even, ""), &[whole]), [8, 32], map);
 }

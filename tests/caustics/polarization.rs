@@ -6,7 +6,7 @@ use abbe::plan::plan;
 use abbe::trace::{LightPass, MapPasses, Method, Polarizing, Smoothness, polarization_error, prepare, render};
 
 use crate::support::fresnel::reflectances;
-use crate::support::scenes::{SPLITTING, body, moments, quad, scene, view};
+use crate::support::scenes::{SPLITTING, body, mean_and_variance, quad, scene, view};
 
 fn square(center: DVec3, normal: DVec3, half: f64) -> String {
     let up = DVec3::new(0.0, 0.0, half);
@@ -52,7 +52,7 @@ fn two_plates(in_a_mirror: bool) -> String {
 const SEEDS: u64 = 4;
 
 #[test]
-fn what_polarization_may_change_of_a_caustic_is_said_where_photons_are_seen_and_where_they_are_gathered() {
+fn the_effect_of_polarization_on_a_caustic_is_reported_for_photons_splatted_or_gathered() {
     for in_a_mirror in [false, true] {
         let scene = scene(&two_plates(in_a_mirror));
         let map = in_a_mirror.then_some(MapPasses { count: 2, photons: 50_000, radius: 1.0, chance: 1.0 });
@@ -69,25 +69,28 @@ fn what_polarization_may_change_of_a_caustic_is_said_where_photons_are_seen_and_
         let by =
             |polarization, seed| render(&prepare(&scene, Method { polarization, seed, ..method.clone() }), &|_| ());
         let (film, report) = by(Polarizing::Averaged, 0);
-        let lit = film.pixels.iter().filter(|pixel| pixel.rgb[1] > 0.0).count();
-        assert!(lit > film.pixels.len() / 2, "in a mirror {in_a_mirror}: {lit} pixels are lit");
+        let lit_pixels = film.pixels.iter().filter(|pixel| pixel.rgb[1] > 0.0).count();
+        assert!(lit_pixels > film.pixels.len() / 2, "in a mirror {in_a_mirror}: {lit_pixels} pixels are lit");
         // All visible light was reflected by both plates, which reflect only one polarization: polarization doubles it.
         println!("in a mirror {in_a_mirror}: {:.4}", report.polarization);
-        let stated = [report.polarization, report.polarization_of_tile];
-        assert!(stated.iter().all(|&stated| stated > 0.99 && stated < 1.0 + 1e-6), "{in_a_mirror}: {stated:?}");
+        let reported = [report.polarization, report.polarization_of_tile];
+        assert!(
+            reported.iter().all(|&reported| reported > 0.99 && reported < 1.0 + 1e-6),
+            "{in_a_mirror}: {reported:?}"
+        );
         assert!(planned.method.light_pass.is_some(), "{:?}", planned.because);
-        let said = |line: &String| line.starts_with("polarization on: without it, the image would be wrong by");
-        assert!(planned.because.iter().any(said), "{in_a_mirror}: {:?}", planned.because);
+        let states_error = |line: &String| line.starts_with("polarization on: without it, the image would be wrong by");
+        assert!(planned.because.iter().any(states_error), "{in_a_mirror}: {:?}", planned.because);
         // The planes of incidence coincide, so tracing polarization doubles the light.
         let sums = |polarization| {
-            moments((0..SEEDS).map(|seed| {
+            mean_and_variance((0..SEEDS).map(|seed| {
                 let (film, report) = by(polarization, seed);
                 assert!(polarization == Polarizing::Averaged || report.polarization == 0.0);
                 film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).sum::<f64>()
             }))
         };
         let [(averaged, v), (traced, w)] = [sums(Polarizing::Averaged), sums(Polarizing::Traced)];
-        let z = (traced - stated[0].mul_add(averaged, averaged)) / ((4.0 * v + w) / SEEDS as f64).sqrt();
+        let z = (traced - reported[0].mul_add(averaged, averaged)) / ((4.0 * v + w) / SEEDS as f64).sqrt();
         println!("in a mirror {in_a_mirror}: {:.4}, z {z:.2}", traced / averaged);
         assert!(z.abs() < 3.0, "in a mirror {in_a_mirror}: {}, z {z}", traced / averaged);
     }
@@ -104,14 +107,17 @@ const INDICES: [f64; 3] = [1.333, 1.52, 2.42];
 /// once with the light treated as unpolarized at every surface.
 fn through_a_plate(index: f64) -> [f64; 2] {
     let reflected = reflectances(index, 0.5);
-    let through = |r: f64| (1.0 - r) / (1.0 + r);
-    [reflected.map(through).iter().sum::<f64>() / 2.0, through(reflected.iter().sum::<f64>() / 2.0)]
+    let plate_transmittance = |r: f64| (1.0 - r) / (1.0 + r);
+    [
+        reflected.map(plate_transmittance).iter().sum::<f64>() / 2.0,
+        plate_transmittance(reflected.iter().sum::<f64>() / 2.0),
+    ]
 }
 
 /// Photons whose wavelengths have parted carry one lane each. The effect of polarization is relative to that lane, and
 /// absent lanes do not count.
 #[test]
-fn what_polarization_changes_of_parted_photons_is_said_by_the_lanes_that_they_bring() {
+fn the_effect_of_polarization_on_parted_photons_is_reported_for_their_lanes() {
     let [red, green, blue] = INDICES;
     let glass = format!("dielectric = {{ index = {{ rgb = [{red}, {green}, {blue}] }} }}");
     let roof = "cube = { center = [0, 0.22, 0], size = [1.4, 0.04, 1.4] }";
@@ -122,7 +128,7 @@ fn what_polarization_changes_of_parted_photons_is_said_by_the_lanes_that_they_br
     let scene = scene(&text);
     let method = plan(&scene).method;
     let errors = (0..16).map(|seed| polarization_error(&prepare(&scene, Method { seed, ..method.clone() })));
-    let (mean, variance) = moments(errors);
+    let (mean, variance) = mean_and_variance(errors);
     // X + Y + Z of the primaries of sRGB (IEC 61966-2-1).
     let amounts = [0.4124 + 0.2126 + 0.0193, 0.3576 + 0.7152 + 0.1192, 0.1805 + 0.0722 + 0.9505];
     let seen = |way: usize| (0..3).map(|band| amounts[band] * through_a_plate(INDICES[band])[way]).sum::<f64>();
@@ -141,6 +147,6 @@ fn beams_that_polarization_changes_either_way_are_no_less_wrong_together() {
     let method = plan(&scene).method;
     assert_eq!(method.polarization, Polarizing::Traced);
     let errors = (0..4).map(|seed| polarization_error(&prepare(&scene, Method { seed, ..method.clone() })));
-    let (mean, _) = moments(errors);
+    let (mean, _) = mean_and_variance(errors);
     assert!((0.007..0.06).contains(&mean), "{mean}");
 }

@@ -3,13 +3,13 @@
 use abbe::plan::plan;
 use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 
-use super::agreement::{ABOVE, FLOOR, agree_with, glass, seen_by};
+use super::agreement::{ABOVE, FLOOR, assert_agree_with_map, camera_and_film, glass};
 use crate::support::scenes::{SPLITTING, film_of, object, scene};
 
 /// Everything seen through dispersive glass had one wrong color when the paths of a pass shared their wavelengths.
 #[test]
 fn k1_glass_that_no_photon_lights_is_the_same_to_the_last_bit_with_a_map_and_without() {
-    let text = seen_by("position = [0, 0, 5]\nlook_at = [0, 0, 0]\nvertical_fov = 30", "")
+    let text = camera_and_film("position = [0, 0, 5]\nlook_at = [0, 0, 0]\nvertical_fov = 30", "")
         + "[render]\nmodel = \"hero\"\n"
         + &glass("index = \"N-SF66\"")
         + &object("glass", "sphere = { center = [0, 0, 0], radius = 1 }")
@@ -49,7 +49,7 @@ fn k2_lines_and_smooth_spectra_thrown_by_a_prism_and_a_mirror_are_seen_through_a
         ("lines", "{ lines = [[435.8, 3], [546.1, 4], [577.0, 1], [579.1, 1], [612, 5]] }"),
         ("smooth", "{ blackbody = 3000, scale = 5 }"),
     ] {
-        let text = seen_by(ABOVE, "")
+        let text = camera_and_film(ABOVE, "")
             + "[render]\nmodel = \"hero\"\n"
             + FLOOR
             + &format!("[material.lamp]\nemissive = {{ radiance = {radiance} }}\n")
@@ -61,6 +61,11 @@ fn k2_lines_and_smooth_spectra_thrown_by_a_prism_and_a_mirror_are_seen_through_a
             + &object("mirror", "quad = { center = [0.2, 0.7, -1.1], u = [0.8, 0, 0], v = [0, 0.6, 0.1] }")
             + &object("frost", "cube = { center = [0.7, 0.15, 0.6], size = [0.8, 0.3, 0.5] }")
             + &object("lamp", "disc = { center = [-2, 2.5, 0], normal = [2, -2, 0], radius = 0.6 }");
-        agree_with(what, &text, [4; 2], Some(MapPasses { count: 4, photons: 4096, radius: 0.15, chance: 1.0 }));
+        assert_agree_with_map(
+            what,
+            &text,
+            [4; 2],
+            Some(MapPasses { count: 4, photons: 4096, radius: 0.15, chance: 1.0 }),
+        );
     }
 }

@@ -18,37 +18,37 @@ fn run(folder: &Folder, words: &str) -> Answer {
 }
 
 /// Returns the rest of stderr from the first occurrence of a word.
-fn said_from<'a>(answer: &'a Answer, word: &str) -> &'a str {
+fn stderr_from<'a>(answer: &'a Answer, word: &str) -> &'a str {
     answer.stderr.find(word).map_or(&*answer.stderr, |at| &answer.stderr[at..]).trim_end()
 }
 
-fn refused(folder: &Folder, words: &str, message: &str) {
+fn assert_refusal(folder: &Folder, words: &str, message: &str) {
     let answer = run(folder, words);
-    assert_eq!((answer.code, said_from(&answer, "error:")), (Some(2), message), "{words}");
+    assert_eq!((answer.code, stderr_from(&answer, "error:")), (Some(2), message), "{words}");
 }
 
-fn done(folder: &Folder, words: &str) -> Answer {
+fn run_ok(folder: &Folder, words: &str) -> Answer {
     let answer = run(folder, words);
     assert_eq!(answer.code, Some(0), "{words}: {}", answer.stderr);
     answer
 }
 
-fn modified(folder: &Folder, name: &str) -> SystemTime {
+fn modified_time(folder: &Folder, name: &str) -> SystemTime {
     fs::metadata(folder.path_of(name)).and_then(|found| found.modified()).expect("it was written")
 }
 
 #[test]
-fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
+fn resuming_a_finished_render_says_so_and_rewrites_nothing() {
     let folder = folder();
-    let begun = done(&folder, "s.toml --resume");
+    let begun = run_ok(&folder, "s.toml --resume");
     assert!(
         begun.stderr.contains("there is no s.checkpoint yet: the render starts from the beginning\n"),
         "{}",
         begun.stderr
     );
-    assert_eq!(folder.listing(), ["s.checkpoint", "s.exr", "s.toml"]);
-    let times = ["s.checkpoint", "s.exr"].map(|name| modified(&folder, name));
-    for (words, told) in [
+    assert_eq!(folder.file_names(), ["s.checkpoint", "s.exr", "s.toml"]);
+    let times = ["s.checkpoint", "s.exr"].map(|name| modified_time(&folder, name));
+    for (words, message) in [
         (
             "s.toml --resume",
             "s.checkpoint has all samples that are needed, and the image is written: nothing is left to do",
@@ -59,27 +59,27 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
         ),
     ] {
         // The command makes no plan for this.
-        assert_eq!(done(&folder, words).stderr, format!("{told}\n"), "{words}");
+        assert_eq!(run_ok(&folder, words).stderr, format!("{message}\n"), "{words}");
     }
-    assert_eq!(["s.checkpoint", "s.exr"].map(|name| modified(&folder, name)), times);
+    assert_eq!(["s.checkpoint", "s.exr"].map(|name| modified_time(&folder, name)), times);
     // An image that differs from the written one is made again, and so are other files that are now asked for.
     let image = folder.read("s.exr");
     folder.write("s.exr", "another image");
-    done(&folder, "s.toml --resume");
+    run_ok(&folder, "s.toml --resume");
     assert!(folder.read("s.exr") == image);
-    done(&folder, "s.toml --resume --exr s.exr --png s.png --report s.json");
-    assert_eq!(folder.listing(), ["s.checkpoint", "s.exr", "s.json", "s.png", "s.toml"]);
+    run_ok(&folder, "s.toml --resume --exr s.exr --png s.png --report s.json");
+    assert_eq!(folder.file_names(), ["s.checkpoint", "s.exr", "s.json", "s.png", "s.toml"]);
     // A different exposure makes a different picture.
     let picture = folder.read("s.png");
-    done(&folder, "s.toml --resume --exr s.exr --png s.png --exposure 2");
+    run_ok(&folder, "s.toml --resume --exr s.exr --png s.png --exposure 2");
     assert!(folder.read("s.png") != picture && folder.read("s.exr") == image);
-    let asked = "s.toml --resume --exr s.exr --png s.png --exposure 2";
-    assert!(done(&folder, asked).stderr.contains("nothing is left to do"));
+    let arguments = "s.toml --resume --exr s.exr --png s.png --exposure 2";
+    assert!(run_ok(&folder, arguments).stderr.contains("nothing is left to do"));
     // An image that was lost is written again.
     fs::remove_file(folder.path_of("s.exr")).expect("it is there");
-    done(&folder, "s.toml --resume");
+    run_ok(&folder, "s.toml --resume");
     assert!(folder.read("s.exr") == image);
-    refused(
+    assert_refusal(
         &folder,
         "s.toml --checkpoint 1h",
         "error: s.checkpoint already exists from an earlier run\nhelp: add --resume to go on from it, or delete it to start over",
@@ -89,7 +89,7 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
 #[test]
 fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs() {
     let folder = folder();
-    done(&folder, "s.toml --resume --samples 4");
+    run_ok(&folder, "s.toml --resume --samples 4");
     let begin_anew = "help: delete it to start over, or name another image";
     for (flags, difference) in [
         ("--seed 4", "its seed is 3, not 4"),
@@ -99,12 +99,12 @@ fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs(
         ("--spectral", "its number of spectral bands is 0, not 81"),
     ] {
         let message = format!("error: cannot go on from s.checkpoint: {difference}\n{begin_anew}");
-        refused(&folder, &format!("s.toml --resume --samples 4 {flags}"), &message);
+        assert_refusal(&folder, &format!("s.toml --resume --samples 4 {flags}"), &message);
     }
     folder.write("s.toml", GLASS.replace("index = 1.5", "index = 1.6"));
     let difference = "it was made from another scene, or from this one before it was changed";
     let message = format!("error: cannot go on from s.checkpoint: {difference}\n{begin_anew}");
-    refused(&folder, "s.toml --resume --samples 4", &message);
+    assert_refusal(&folder, "s.toml --resume --samples 4", &message);
     #[cfg(unix)]
     {
         // A pipe that nobody writes to.
@@ -112,16 +112,16 @@ fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs(
         fs::remove_file(&pipe).expect("it is there");
         assert!(Command::new("mkfifo").arg(&pipe).status().expect("there is mkfifo").success());
         let message = "error: cannot go on from s.checkpoint: it is not a checkpoint\nhelp: name another image, or move that file away";
-        refused(&folder, "s.toml --resume", message);
+        assert_refusal(&folder, "s.toml --resume", message);
         fs::remove_file(&pipe).expect("it is there");
     }
     folder.write("s.checkpoint", "something else");
-    refused(
+    assert_refusal(
         &folder,
         "s.toml --resume",
         "error: cannot go on from s.checkpoint: it is not a checkpoint\nhelp: name another image, or move that file away",
     );
-    refused(
+    assert_refusal(
         &folder,
         "s.toml --checkpoint 1h",
         "error: s.checkpoint would be overwritten, but it is not a checkpoint\n\
@@ -134,14 +134,14 @@ fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs(
 fn parts_that_do_not_make_one_image_are_refused_by_name() {
     let folder = folder();
     for part in ["1/2", "2/2", "1/3", "2/4294967295"] {
-        done(&folder, &format!("s.toml --samples 4 --exr new/folder/s.exr --shard {part}"));
+        run_ok(&folder, &format!("s.toml --samples 4 --exr new/folder/s.exr --shard {part}"));
     }
-    done(&folder, "s.toml --samples 4 --exr seed.exr --shard 2/2 --seed 8");
+    run_ok(&folder, "s.toml --samples 4 --exr seed.exr --shard 2/2 --seed 8");
     // Plans without a photon map do not depend on the number of samples.
     let off = "--set render.caustics=off";
-    done(&folder, &format!("s.toml --samples 4 {off} --exr off.exr --shard 1/2"));
-    done(&folder, &format!("s.toml --samples 5 {off} --exr samples.exr --shard 2/2"));
-    done(&folder, "s.toml --samples 4 --exr layers.exr --shard 2/2 --layers N");
+    run_ok(&folder, &format!("s.toml --samples 4 {off} --exr off.exr --shard 1/2"));
+    run_ok(&folder, &format!("s.toml --samples 5 {off} --exr samples.exr --shard 2/2"));
+    run_ok(&folder, "s.toml --samples 4 --exr layers.exr --shard 2/2 --layers N");
     let [one, two, third, most] =
         ["1-of-2", "2-of-2", "1-of-3", "2-of-4294967295"].map(|part| format!("new/folder/s.{part}.part"));
     let again = "help: render it again, or leave it out";
@@ -174,50 +174,58 @@ fn parts_that_do_not_make_one_image_are_refused_by_name() {
                 .into(),
         ),
     ] {
-        refused(&folder, &format!("merge old.exr {parts}"), &message);
+        assert_refusal(&folder, &format!("merge old.exr {parts}"), &message);
     }
     let missing =
         "error: there is no part new.part\nhelp: parts are made by --shard, as in render --shard 1/4 scene.toml";
-    refused(&folder, &format!("merge fresh/old.exr {one} new.part"), missing);
+    assert_refusal(&folder, &format!("merge fresh/old.exr {one} new.part"), missing);
     assert!(!folder.path_of("fresh").exists());
     assert_eq!(run(&folder, &format!("merge old.exr {one} samples.2-of-2.part")).code, Some(2));
     assert_eq!(folder.read("old.exr"), b"an image of last week");
-    assert_eq!(done(&folder, &format!("merge old.exr {two} {one}")).stderr, "wrote old.exr\n");
-    done(&folder, "s.toml --samples 4");
+    assert_eq!(run_ok(&folder, &format!("merge old.exr {two} {one}")).stderr, "wrote old.exr\n");
+    run_ok(&folder, "s.toml --samples 4");
     assert!(folder.read("s.exr") == folder.read("old.exr"));
 }
 
 #[test]
 fn a_plan_is_made_once_and_followed_and_one_of_something_else_is_refused() {
     let folder = folder();
-    let asked = "s.toml --samples 4 --layers N";
-    let planned = done(&folder, &format!("{asked} --plan --plan-file new/folder/s.plan"));
+    let arguments = "s.toml --samples 4 --layers N";
+    let planned = run_ok(&folder, &format!("{arguments} --plan --plan-file new/folder/s.plan"));
     assert_eq!(planned.stderr, "wrote new/folder/s.plan\n");
-    done(&folder, &format!("{asked} --exr without.exr"));
-    done(&folder, &format!("{asked} --plan-file new/folder/s.plan --exr with.exr"));
+    run_ok(&folder, &format!("{arguments} --exr without.exr"));
+    run_ok(&folder, &format!("{arguments} --plan-file new/folder/s.plan --exr with.exr"));
     assert!(folder.read("with.exr") == folder.read("without.exr"));
     for part in ["1/2", "2/2"] {
-        done(&folder, &format!("{asked} --plan-file new/folder/s.plan --exr part.exr --shard {part}"));
+        run_ok(&folder, &format!("{arguments} --plan-file new/folder/s.plan --exr part.exr --shard {part}"));
     }
-    done(&folder, "merge merged.exr part.1-of-2.part part.2-of-2.part");
+    run_ok(&folder, "merge merged.exr part.1-of-2.part part.2-of-2.part");
     assert!(folder.read("merged.exr") == folder.read("without.exr"));
     folder.write("other.toml", GLASS.replace("index = 1.5", "index = 1.6"));
     let help = "help: make it with the same options: render --plan scene.toml --plan-file frame.plan";
     let cannot = "cannot follow new/folder/s.plan: ";
     for (words, message) in [
-        (format!("{asked} --seed 4"), format!("{cannot}its seed is 3, not 4")),
-        (asked.replace("--samples 4", "--samples 8"), format!("{cannot}its number of samples is 4, not 8")),
-        (asked.replace("N", "P"), format!("{cannot}its list of layers is N, not P")),
+        (format!("{arguments} --seed 4"), format!("{cannot}its seed is 3, not 4")),
+        (arguments.replace("--samples 4", "--samples 8"), format!("{cannot}its number of samples is 4, not 8")),
+        (arguments.replace("N", "P"), format!("{cannot}its list of layers is N, not P")),
         (
-            asked.replace("s.toml", "other.toml"),
+            arguments.replace("s.toml", "other.toml"),
             format!("{cannot}it was made from another scene, or from this one before it was changed"),
         ),
     ] {
-        refused(&folder, &format!("{words} --plan-file new/folder/s.plan"), &format!("error: {message}\n{help}"));
+        assert_refusal(
+            &folder,
+            &format!("{words} --plan-file new/folder/s.plan"),
+            &format!("error: {message}\n{help}"),
+        );
     }
-    refused(&folder, "s.toml --plan-file s.plan", &format!("error: there is no plan s.plan\n{help}"));
-    refused(&folder, "s.toml --plan-file s.toml", &format!("error: s.toml is not a plan\n{help}"));
-    refused(&folder, "s.toml --plan --plan-file s.toml", "error: s.toml is the scene itself\nhelp: name another file");
+    assert_refusal(&folder, "s.toml --plan-file s.plan", &format!("error: there is no plan s.plan\n{help}"));
+    assert_refusal(&folder, "s.toml --plan-file s.toml", &format!("error: s.toml is not a plan\n{help}"));
+    assert_refusal(
+        &folder,
+        "s.toml --plan --plan-file s.toml",
+        "error: s.toml is the scene itself\nhelp: name another file",
+    );
     assert_eq!(folder.read("s.toml"), GLASS.as_bytes());
 }
 
@@ -225,10 +233,10 @@ fn a_plan_is_made_once_and_followed_and_one_of_something_else_is_refused() {
 #[test]
 fn a_picture_alone_follows_the_plan_of_a_scene_with_spectra() {
     let folder = folder();
-    let asked = "s.toml --samples 4 --set film.spectral=true";
-    done(&folder, &format!("{asked} --plan --plan-file s.plan"));
-    done(&folder, &format!("{asked} --plan-file s.plan --png s.png"));
-    assert_eq!(folder.listing(), ["s.plan", "s.png", "s.toml"]);
+    let arguments = "s.toml --samples 4 --set film.spectral=true";
+    run_ok(&folder, &format!("{arguments} --plan --plan-file s.plan"));
+    run_ok(&folder, &format!("{arguments} --plan-file s.plan --png s.png"));
+    assert_eq!(folder.file_names(), ["s.plan", "s.png", "s.toml"]);
 }
 
 /// Parts may have been renamed. A checkpoint that matches a new name belongs to another render.
@@ -236,41 +244,41 @@ fn a_picture_alone_follows_the_plan_of_a_scene_with_spectra() {
 fn merging_deletes_the_checkpoints_of_parts_alone() {
     let folder = folder();
     for part in ["1/2", "2/2"] {
-        done(&folder, &format!("s.toml --samples 4 --resume --shard {part}"));
+        run_ok(&folder, &format!("s.toml --samples 4 --resume --shard {part}"));
     }
     fs::rename(folder.path_of("s.1-of-2.part"), folder.path_of("s.part")).expect("any name will do");
     for other in ["s.checkpoint", "notes-of-today.checkpoint"] {
         folder.write(other, "something else");
     }
     fs::rename(folder.path_of("s.2-of-2.part"), folder.path_of("notes-of-today.part")).expect("it is there");
-    done(&folder, "merge --delete out.exr s.part notes-of-today.part");
+    run_ok(&folder, "merge --delete out.exr s.part notes-of-today.part");
     let left = "notes-of-today.checkpoint out.exr s.1-of-2.checkpoint s.2-of-2.checkpoint s.checkpoint s.toml";
-    assert_eq!(folder.listing(), left.split(' ').collect::<Vec<_>>());
+    assert_eq!(folder.file_names(), left.split(' ').collect::<Vec<_>>());
 }
 
 #[test]
 fn parts_of_a_scene_that_asks_for_an_error_follow_a_plan_for_parts() {
     let folder = folder();
-    let asked = "s.toml --error 0.5 --samples 64";
-    done(&folder, &format!("{asked} --plan --plan-file whole.plan"));
-    done(&folder, &format!("{asked} --plan --plan-file parts.plan --shard 1/2"));
+    let arguments = "s.toml --error 0.5 --samples 64";
+    run_ok(&folder, &format!("{arguments} --plan --plan-file whole.plan"));
+    run_ok(&folder, &format!("{arguments} --plan --plan-file parts.plan --shard 1/2"));
     for part in ["1/2", "2/2"] {
-        refused(
+        assert_refusal(
             &folder,
-            &format!("{asked} --plan-file whole.plan --shard {part}"),
+            &format!("{arguments} --plan-file whole.plan --shard {part}"),
             "error: cannot follow whole.plan: its error is 0.5, not none\n\
              help: parts take all samples, and have a plan of their own: render --plan scene.toml --shard 1/4 \
              --plan-file frame.plan",
         );
-        done(&folder, &format!("{asked} --plan-file parts.plan --exr out.exr --shard {part}"));
+        run_ok(&folder, &format!("{arguments} --plan-file parts.plan --exr out.exr --shard {part}"));
     }
-    done(&folder, "merge merged.exr out.1-of-2.part out.2-of-2.part");
-    done(&folder, "s.toml --samples 64 --exr whole.exr");
+    run_ok(&folder, "merge merged.exr out.1-of-2.part out.2-of-2.part");
+    run_ok(&folder, "s.toml --samples 64 --exr whole.exr");
     assert!(folder.read("merged.exr") == folder.read("whole.exr"));
 }
 
 #[test]
-fn flags_that_have_no_place_are_refused() {
+fn misplaced_flags_are_refused() {
     let folder = folder();
     for (words, message) in [
         ("s.toml --plan --resume", "error: --resume belongs to a render, and nothing is rendered\nhelp: leave it out"),
@@ -292,7 +300,7 @@ fn flags_that_have_no_place_are_refused() {
             "error: parts of an image record no time, so --stamp cannot be used with --shard\nhelp: leave it out",
         ),
     ] {
-        refused(&folder, words, message);
+        assert_refusal(&folder, words, message);
     }
     for (words, part) in [
         ("s.toml --checkpoint 60", "a time is a number with a unit, such as 60s, 5m or 1h"),
@@ -305,12 +313,12 @@ fn flags_that_have_no_place_are_refused() {
         let answer = run(&folder, words);
         assert!(answer.code == Some(2) && answer.stderr.contains(part), "{words}: {}", answer.stderr);
     }
-    assert_eq!(folder.listing(), ["s.toml"]);
+    assert_eq!(folder.file_names(), ["s.toml"]);
 }
 
 /// Sends a signal to each of several commands.
 #[cfg(unix)]
-fn send(signal: &str, to: &[&Child]) {
+fn send_signal(signal: &str, to: &[&Child]) {
     let sent = Command::new("kill").arg(signal).args(to.iter().map(|child| child.id().to_string())).status();
     assert!(sent.expect("there is kill").success());
 }
@@ -325,12 +333,12 @@ fn wait_for(folder: &Folder, file: &str) {
 /// Starts a render, waits for a file and then sends a signal twice, as `timeout` does. Returns the text on stderr and
 /// the exit code.
 #[cfg(unix)]
-fn stopped(folder: &Folder, words: &str, signal: &str, file: &str) -> (String, Option<i32>) {
+fn run_and_stop(folder: &Folder, words: &str, signal: &str, file: &str) -> (String, Option<i32>) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
     command.current_dir(folder.path()).args(words.split(' ')).stderr(Stdio::piped());
     let child = command.spawn().expect("the command can be started");
     wait_for(folder, file);
-    send(signal, &[&child, &child]);
+    send_signal(signal, &[&child, &child]);
     let output = child.wait_with_output().expect("it ends");
     (String::from_utf8(output.stderr).expect("messages are UTF-8"), output.status.code())
 }
@@ -340,17 +348,17 @@ fn stopped(folder: &Folder, words: &str, signal: &str, file: &str) -> (String, O
 fn a_render_that_is_told_to_stop_says_how_to_go_on_and_goes_on_to_the_same_bytes() {
     let folder = folder();
     let samples = "--samples 2000";
-    done(&folder, &format!("s.toml --exr whole.exr {samples}"));
+    run_ok(&folder, &format!("s.toml --exr whole.exr {samples}"));
     for signal in ["-INT", "-TERM"] {
         let words = format!("s.toml {samples} --threads 1 --checkpoint 20ms --snapshot 20ms");
-        let (said, code) = stopped(&folder, &words, signal, "s.checkpoint");
-        let told = format!(
+        let (printed, code) = run_and_stop(&folder, &words, signal, "s.checkpoint");
+        let message = format!(
             "stopped; s.checkpoint keeps what is done. Go on with\n  {} {words} --resume\n",
             env!("CARGO_BIN_EXE_render")
         );
-        assert!(code == Some(130) && said.ends_with(&told), "{code:?}: {said}");
-        assert_eq!(folder.listing().iter().filter(|name| name.starts_with('.')).count(), 0);
-        done(&folder, &format!("s.toml {samples} --resume"));
+        assert!(code == Some(130) && printed.ends_with(&message), "{code:?}: {printed}");
+        assert_eq!(folder.file_names().iter().filter(|name| name.starts_with('.')).count(), 0);
+        run_ok(&folder, &format!("s.toml {samples} --resume"));
         assert!(folder.read("s.exr") == folder.read("whole.exr"), "{signal}");
         fs::remove_file(folder.path_of("s.checkpoint")).expect("it is there");
     }
@@ -365,20 +373,20 @@ fn a_render_that_keeps_nothing_says_so_when_it_is_told_to_stop() {
         let words = ["s.toml", "--samples", "1000000", "--json", "--exr", "new/folder/s.exr"];
         command.current_dir(folder.path()).args(words).stdout(Stdio::piped());
         let mut child = command.spawn().expect("the command can be started");
-        let mut said = BufReader::new(child.stdout.take().expect("it is piped"));
+        let mut printed = BufReader::new(child.stdout.take().expect("it is piped"));
         // The command reports its progress once a second.
         let mut line = String::new();
         while !line.contains("\"kind\":\"progress\"") {
             line.clear();
-            assert!(said.read_line(&mut line).expect("messages are UTF-8") > 0, "it renders");
+            assert!(printed.read_line(&mut line).expect("messages are UTF-8") > 0, "it renders");
         }
-        send(signal, &[&child]);
+        send_signal(signal, &[&child]);
         let mut rest = String::new();
-        said.read_to_string(&mut rest).expect("messages are UTF-8");
-        let told = "stopped; nothing of this image was kept. With --checkpoint 60s, what is done is kept";
-        assert!(rest.lines().any(|line| line.contains("\"note\"") && line.contains(told)), "{rest}");
+        printed.read_to_string(&mut rest).expect("messages are UTF-8");
+        let message = "stopped; nothing of this image was kept. With --checkpoint 60s, what is done is kept";
+        assert!(rest.lines().any(|line| line.contains("\"note\"") && line.contains(message)), "{rest}");
         assert_eq!(child.wait().expect("it ends").code(), Some(130));
-        assert_eq!(folder.listing(), ["s.toml"]);
+        assert_eq!(folder.file_names(), ["s.toml"]);
     }
 }
 
@@ -386,18 +394,21 @@ fn a_render_that_keeps_nothing_says_so_when_it_is_told_to_stop() {
 #[test]
 fn a_snapshot_has_its_spectra_beside_it() {
     let folder = folder();
-    let (_, code) = stopped(&folder, "s.toml --samples 2000 --spectral --snapshot 20ms", "-INT", "s.spectral.exr");
-    assert_eq!((code, folder.listing()), (Some(130), ["s.exr", "s.spectral.exr", "s.toml"].map(String::from).into()));
+    let (_, code) = run_and_stop(&folder, "s.toml --samples 2000 --spectral --snapshot 20ms", "-INT", "s.spectral.exr");
+    assert_eq!(
+        (code, folder.file_names()),
+        (Some(130), ["s.exr", "s.spectral.exr", "s.toml"].map(String::from).into())
+    );
     for name in ["s.exr", "s.spectral.exr"] {
-        let told = done(&folder, &format!("info {name}")).stdout;
-        assert!(told.contains("render/complete"), "{name}: {told}");
+        let message = run_ok(&folder, &format!("info {name}")).stdout;
+        assert!(message.contains("render/complete"), "{name}: {message}");
     }
 }
 
 /// Arguments may have any encoding.
 #[cfg(target_os = "linux")]
 #[test]
-fn how_to_go_on_is_said_of_files_of_any_name() {
+fn the_message_on_how_to_resume_quotes_any_file_name() {
     use std::ffi::OsStr;
     use std::os::unix::ffi::OsStrExt;
     let folder = folder();
@@ -407,13 +418,13 @@ fn how_to_go_on_is_said_of_files_of_any_name() {
     command.current_dir(folder.path()).arg(name).args(["--samples", "2000", "--exr", "s.exr", "--checkpoint", "20ms"]);
     let mut child = command.stderr(Stdio::piped()).spawn().expect("the command can be started");
     wait_for(&folder, "s.checkpoint");
-    send("-INT", &[&child]);
-    let mut said = Vec::new();
-    child.stderr.take().expect("it is piped").read_to_end(&mut said).expect("it ends");
-    let said = String::from_utf8_lossy(&said);
+    send_signal("-INT", &[&child]);
+    let mut printed = Vec::new();
+    child.stderr.take().expect("it is piped").read_to_end(&mut printed).expect("it ends");
+    let printed = String::from_utf8_lossy(&printed);
     assert!(
-        child.wait().expect("it ends").code() == Some(130) && said.contains(" $'sc\\xe9ne.toml' --samples"),
-        "{said}"
+        child.wait().expect("it ends").code() == Some(130) && printed.contains(" $'sc\\xe9ne.toml' --samples"),
+        "{printed}"
     );
 }
 
@@ -430,11 +441,14 @@ fn a_command_that_has_not_begun_to_render_stops_at_once() {
         let child = command.spawn().expect("the command can be started");
         // The command opens the scene and waits for its text.
         let scene = fs::OpenOptions::new().write(true).open(folder.path_of("p.toml")).expect("somebody reads");
-        send("-TERM", &[&child]);
+        send_signal("-TERM", &[&child]);
         let output = child.wait_with_output().expect("it ends");
         drop(scene);
-        let said = String::from_utf8(output.stderr).expect("messages are UTF-8");
-        assert_eq!((output.status.code(), &*said), (Some(130), "stopped before anything of this image was rendered\n"));
+        let printed = String::from_utf8(output.stderr).expect("messages are UTF-8");
+        assert_eq!(
+            (output.status.code(), &*printed),
+            (Some(130), "stopped before anything of this image was rendered\n")
+        );
     }
 }
 
@@ -448,10 +462,10 @@ fn a_checkpoint_that_cannot_be_written_stops_no_render_and_loses_no_file() {
     let mut shell = Command::new("sh");
     let output = shell.current_dir(folder.path()).args(["-c", line, env!("CARGO_BIN_EXE_render")]).output();
     let output = output.expect("there is a shell");
-    let said = String::from_utf8(output.stderr).expect("messages are UTF-8");
-    assert!(said.contains("warning: the render goes on, but cannot write s.checkpoint: "), "{said}");
-    assert!(said.contains("error: cannot write s.exr: "), "{said}");
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert_eq!(folder.listing(), ["s.exr", "s.toml"]);
+    let printed = String::from_utf8(output.stderr).expect("messages are UTF-8");
+    assert!(printed.contains("warning: the render goes on, but cannot write s.checkpoint: "), "{printed}");
+    assert!(printed.contains("error: cannot write s.exr: "), "{printed}");
+    assert_eq!(output.status.code(), Some(1), "{printed}");
+    assert_eq!(folder.file_names(), ["s.exr", "s.toml"]);
     assert_eq!(folder.read("s.exr"), b"an image of last week");
 }

@@ -13,7 +13,7 @@ use crate::support::scenes::scene;
 const STEP: usize = 97;
 
 /// Runs a reader on damaged versions of a file. Each time, it has to return an error that names the file.
-fn try_all(path: &Path, what: &str, mut read: impl FnMut() -> Result<(), Error>) {
+fn try_damaged_versions(path: &Path, what: &str, mut read: impl FnMut() -> Result<(), Error>) {
     let whole = fs::read(path).expect("it was written");
     assert!(read().is_ok(), "{what}");
     let mut refused = |bytes: &[u8], how: &str| {
@@ -47,7 +47,7 @@ fn f3_a_changed_byte_of_a_checkpoint_or_a_part_is_found_and_so_is_a_missing_end(
     let [mut first, mut next] = [2, 2].map(|threads| rendering(&scene, &options, threads));
     advance(&mut first, 100);
     first.save(&checkpoint).expect("it can be written");
-    try_all(&checkpoint, "a checkpoint", || next.resume(&checkpoint).map(|_| ()));
+    try_damaged_versions(&checkpoint, "a checkpoint", || next.resume(&checkpoint).map(|_| ()));
     for (number, path) in [(1, &part), (2, &other)] {
         let shard = Shard::new(number, 2).expect("there are two parts");
         let mut rendering = rendering(&scene, &Options { shard, ..options.clone() }, 2);
@@ -55,7 +55,7 @@ fn f3_a_changed_byte_of_a_checkpoint_or_a_part_is_found_and_so_is_a_missing_end(
         rendering.write_part(path).expect("it can be written");
     }
     let parts = [part.clone(), other];
-    try_all(&part, "a part", || merge(&parts).map(|_| ()));
+    try_damaged_versions(&part, "a part", || merge(&parts).map(|_| ()));
 }
 
 #[test]
@@ -65,5 +65,5 @@ fn f3_a_changed_byte_of_a_plan_is_found_and_so_is_a_missing_end() {
     let scene = scene(&GLASS.replace("samples = 20", "samples = 20, model = \"rgb\""));
     abbe::write_plan(&abbe::plan::plan(&scene), &scene, &path).expect("it can be written");
     let planned = Options { plan: Some(path.clone()), threads: Some(1), ..Options::default() };
-    try_all(&path, "a plan", || Rendering::new(&scene, &planned).map(|_| ()));
+    try_damaged_versions(&path, "a plan", || Rendering::new(&scene, &planned).map(|_| ()));
 }

@@ -7,7 +7,7 @@ use super::warps::{around, check_warp};
 use crate::support::random::Random;
 
 /// Returns a sample's position relative to the center of its pixel.
-fn about(filter: Filter, u: [f64; 2]) -> [f64; 2] {
+fn sample_offset(filter: Filter, u: [f64; 2]) -> [f64; 2] {
     let place = filter.place(u);
     [place.x - 0.5, place.y - 0.5]
 }
@@ -18,7 +18,7 @@ fn samples_of_a_tent_fall_in_a_straight_line() {
         // The integral of 1 - |x| from -1.
         let below = |x: f64| if x < 0.0 { 0.5 * (1.0 + x) * (1.0 + x) } else { 1.0 - 0.5 * (1.0 - x) * (1.0 - x) };
         let between = |low: f64, high: f64| below(2.0 * high - 1.0) - below(2.0 * low - 1.0);
-        let warp = |u| about(Filter::Tent { radius }, u).map(|x| 0.5 + 0.5 * x / radius);
+        let warp = |u| sample_offset(Filter::Tent { radius }, u).map(|x| 0.5 + 0.5 * x / radius);
         check_warp(&format!("tent filter of radius {radius}"), warp, |x0, x1, y0, y1| {
             between(x0, x1) * between(y0, y1)
         });
@@ -29,7 +29,7 @@ fn samples_of_a_tent_fall_in_a_straight_line() {
 fn samples_of_a_gaussian_are_normal_within_four_sigma() {
     let sigma = 0.5;
     let warp = |u| {
-        let [x, y] = about(Filter::Gaussian { sigma }, u);
+        let [x, y] = sample_offset(Filter::Gaussian { sigma }, u);
         [((x * x + y * y).sqrt() / (4.0 * sigma)).min(1.0), around(x, y)]
     };
     // The part exp(-r^2 / 2) of the normal distribution in the plane lies beyond r.
@@ -51,7 +51,7 @@ fn samples_of_blackman_harris_follow_the_window() {
         (window(low) + (1..64).map(inner).sum::<f64>() + window(high)) * step / 3.0 / 0.35875
     };
     let radius = 1.5;
-    let warp = |u| about(Filter::BlackmanHarris { radius }, u).map(|x| 0.5 + 0.5 * x / radius);
+    let warp = |u| sample_offset(Filter::BlackmanHarris { radius }, u).map(|x| 0.5 + 0.5 * x / radius);
     // Dividing by the sum over the whole window removes the error of Simpson's rule.
     let all = between(0.0, 0.5) + between(0.5, 1.0);
     check_warp("Blackman-Harris filter", warp, |x0, x1, y0, y1| between(x0, x1) * between(y0, y1) / (all * all));
@@ -86,7 +86,7 @@ fn samples_of_cubics_follow_their_absolute_value() {
         assert!((filter.absolute_integral() - all * all).abs() < 1e-13, "the integral of the absolute value");
         let below = |x: f64| (0.5 * all + absolute_cubic(b, c, x.abs()).copysign(x)) / all;
         let between = |low: f64, high: f64| below(4.0 * high - 2.0) - below(4.0 * low - 2.0);
-        let warp = |u| about(filter, u).map(|x| 0.5 + 0.25 * x);
+        let warp = |u| sample_offset(filter, u).map(|x| 0.5 + 0.25 * x);
         check_warp(&format!("mitchell filter {b} {c}"), warp, |x0, x1, y0, y1| between(x0, x1) * between(y0, y1));
     }
 }
@@ -132,7 +132,7 @@ fn means_of_signed_samples_are_unbiased_and_their_variance_is_known() {
         .sum::<f64>();
     let mut random = Random::new(21);
     for (samples, pixels) in [(5, 400_000), (24, 100_000)] {
-        let (mut sum, mut squares, mut told) = (0.0, 0.0, 0.0);
+        let (mut sum, mut squares, mut predicted) = (0.0, 0.0, 0.0);
         for _ in 0..pixels {
             let (mut counts, mut sums, mut all) = ([0; 2], [0.0; 2], 0.0);
             for _ in 0..samples {
@@ -143,14 +143,14 @@ fn means_of_signed_samples_are_unbiased_and_their_variance_is_known() {
             }
             let weights = SampleWeights::new(filter, counts);
             let mean = weights.sum(sums) / weights.taken();
-            (sum, squares, told) = (sum + mean, squares + mean * mean, told + weights.variance(sums, all));
+            (sum, squares, predicted) = (sum + mean, squares + mean * mean, predicted + weights.variance(sums, all));
         }
         let pixels = f64::from(pixels);
         let (mean, variance) = (sum / pixels, squares / pixels - (sum / pixels) * (sum / pixels));
         // Once in 10000 times, all of 5 samples are in negative lobes, and there is nothing to subtract from.
         let z = (mean - exact) / (variance / pixels).sqrt();
         assert!(z.abs() < 4.0, "{samples} samples: {mean} is {z} standard errors off {exact}");
-        let ratio = told / pixels / variance;
+        let ratio = predicted / pixels / variance;
         assert!((ratio - 1.0).abs() < if samples == 5 { 0.25 } else { 0.05 }, "{samples} samples: {ratio}");
     }
 }
@@ -170,11 +170,11 @@ fn filters_stay_in_their_width_and_are_even() {
     for (filter, width) in filters {
         let corners = [[0.0, 0.0], [0.0, last], [last, 0.0], [last, last], [0.5, 0.5], [0.0, 0.5]];
         for u in (0..1000).map(|_| random.pair()).chain(corners) {
-            let [x, y] = about(filter, u);
+            let [x, y] = sample_offset(filter, u);
             assert!(x.abs() <= width + 1e-15 && y.abs() <= width + 1e-15, "{filter:?} at {u:?}: {x}, {y}");
-            let other = about(filter, u.map(|u| 1.0 - u));
+            let other = sample_offset(filter, u.map(|u| 1.0 - u));
             assert!((x + other[0]).abs() < 1e-9 && (y + other[1]).abs() < 1e-9, "{filter:?} at {u:?}");
         }
-        assert_eq!(about(filter, [0.5, 0.5]), [0.0; 2]);
+        assert_eq!(sample_offset(filter, [0.5, 0.5]), [0.0; 2]);
     }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use abbe::light::{Area, EmissionMap, KnownParts, Light, LightSample, ShownImage};
+use abbe::light::{Area, EmissionMap, Light, LightSample, MeshPartsCache, ShownImage};
 use abbe::math::{DMat3, DVec3, Frame, Ray, Transform};
 use abbe::shape::{
     Attributes, Coordinates, Cube, Density, Disc, Ellipsoid, Intersection, Mesh, Quad, Shape, ShapeSample, Sides,
@@ -115,7 +115,7 @@ fn of_light(shape: &Shape, sample: &LightSample) -> ShapeSample {
 /// Tests the sampling of a shape as a lamp with parts, from a surface with some normal.
 fn check_lamp(name: &str, shape: &Shape, from: DVec3, axis: DVec3, half_angle: f64) {
     let normal = (axis.normalize() + DVec3::new(0.5, -0.3, 0.4)).normalize();
-    let area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, None, &mut KnownParts::default());
+    let area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, None, &mut MeshPartsCache::default());
     let light = Light::Area(area);
     assert!(light.has_parts(), "{name}");
     check_light(name, shape, from, &Bins::new(axis, half_angle), (&light, normal));
@@ -219,7 +219,8 @@ fn directions_toward_a_sphere_that_shows_a_cap_follow_their_density() {
         let mut near = || axis + width * random.number().sqrt() * random.direction().cross(axis).normalize();
         let normals: Vec<DVec3> = (0..2000).map(|_| near().normalize()).collect();
         let shape = Shape::Sphere(Sphere::new(center, radius));
-        let mut area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, None, &mut KnownParts::default());
+        let mut area =
+            Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, None, &mut MeshPartsCache::default());
         area.learn_visible_cap(&normals);
         check_light(name, &shape, from, &Bins::new(-away, half_angle), (&Light::Area(area), -away));
     }
@@ -317,8 +318,8 @@ fn directions_toward_the_triangles_of_copies_of_a_mesh_follow_their_density_and_
         let toward = map.point(DVec3::ZERO) - from;
         check_lamp(&format!("triangles of a copy, {name}, from outside"), &copy, from, toward, 1.0);
         check_lamp(&format!("triangles of a copy, {name}, from inside"), &copy, inside, DVec3::Y, PI);
-        let (known, copy) = (&mut KnownParts::default(), Arc::new(copy));
-        let lamp = Light::Area(Area::new(copy.clone(), 0, (), Sides::Front, true, None, known));
+        let (known_parts, copy) = (&mut MeshPartsCache::default(), Arc::new(copy));
+        let lamp = Light::Area(Area::new(copy.clone(), 0, (), Sides::Front, true, None, known_parts));
         let mut seen = 0;
         for _ in 0..2000 {
             let origin = map.point(4.0 * random.direction());
@@ -356,7 +357,7 @@ fn check_image(name: &str, written: &Shape, map: &Transform, from: DVec3, bins: 
     for shape in shapes {
         let image = ShownImage { coordinates: Arc::new(coordinates), map: Some(Arc::new(seen.clone())) };
         let lamp =
-            Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, Some(image), &mut KnownParts::default());
+            Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, Some(image), &mut MeshPartsCache::default());
         let lamp = Light::Area(lamp);
         assert!(lamp.has_parts(), "{name}");
         let normal = (bins.axis + DVec3::new(0.1, -0.2, 0.1)).normalize();

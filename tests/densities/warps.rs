@@ -2,7 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use abbe::math::{DVec3, ball_surface, cone, cosine_hemisphere, disk, one_minus_cos_of_cone, triangle_coordinates};
+use abbe::math::{
+    DVec3, cone, one_minus_cos_of_cone, sample_cosine_hemisphere, sample_disk, sample_sphere, sample_triangle,
+};
 
 use crate::support::chi_squared;
 use crate::support::random::Random;
@@ -43,7 +45,7 @@ pub fn around(x: f64, y: f64) -> f64 {
 fn points_of_the_disk_are_uniform_by_area() {
     // The area between two radii and two azimuths, divided by pi.
     let probability = |r0: f64, r1: f64, a0: f64, a1: f64| (r1 * r1 - r0 * r0) * (a1 - a0);
-    check_warp("disk", |u| [disk(u).length(), around(disk(u).x, disk(u).y)], probability);
+    check_warp("disk", |u| [sample_disk(u).length(), around(sample_disk(u).x, sample_disk(u).y)], probability);
 }
 
 #[test]
@@ -51,7 +53,7 @@ fn directions_of_the_cosine_hemisphere_follow_the_cosine() {
     // The integral of cos(theta) / pi between two heights and two azimuths.
     let probability = |z0: f64, z1: f64, a0: f64, a1: f64| (z1 * z1 - z0 * z0) * (a1 - a0);
     let warp = |u| {
-        let d: DVec3 = cosine_hemisphere(u);
+        let d: DVec3 = sample_cosine_hemisphere(u);
         assert!((d.length() - 1.0).abs() < 1e-15);
         [d.z, around(d.x, d.y)]
     };
@@ -62,7 +64,7 @@ fn directions_of_the_cosine_hemisphere_follow_the_cosine() {
 fn directions_of_the_sphere_are_uniform() {
     let uniform = |z0: f64, z1: f64, a0: f64, a1: f64| (z1 - z0) * (a1 - a0);
     let warp = |u| {
-        let d = ball_surface(u);
+        let d = sample_sphere(u);
         assert!((d.length() - 1.0).abs() < 1e-15);
         [(0.5 + 0.5 * d.z).clamp(0.0, 1.0), around(d.x, d.y)]
     };
@@ -100,5 +102,5 @@ fn points_of_a_triangle_are_uniform_by_area() {
             whole
         }
     };
-    check_warp("triangle", triangle_coordinates, probability);
+    check_warp("triangle", sample_triangle, probability);
 }

@@ -2,7 +2,7 @@
 
 use abbe::film::Layer;
 
-use super::{rendered, rgb};
+use super::{render_text, rgb};
 
 /// A ball of radius 1 with no surface behind it.
 const BALL: &str = "camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }\n\
@@ -12,7 +12,7 @@ const BALL: &str = "camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertic
 
 #[test]
 fn at_edges_albedo_and_normals_are_premultiplied_and_places_are_whole() {
-    let image = rendered(BALL, &[Layer::Albedo, Layer::Normal, Layer::Position]);
+    let image = render_text(BALL, &[Layer::Albedo, Layer::Normal, Layer::Position]);
     let length = |layer: &str, pixel: usize| {
         let axes =
             ["X", "Y", "Z"].map(|axis| f64::from(image.layer(&format!("{layer}.{axis}")).expect("there")[pixel]));
@@ -57,7 +57,7 @@ fn sheet_with_holes(first: &str, has_holdout: bool, opacity: f64, has_wall: bool
          light = [{{ environment.radiance = 1 }}]\nobject = [{behind}{holdout}{}]\n",
         object(0.0, "material = \"net\"")
     );
-    let image = rendered(&scene, &[Layer::Albedo, Layer::Normal]);
+    let image = render_text(&scene, &[Layer::Albedo, Layer::Normal]);
     let mean = |name: &str| {
         let values = image.layer(name).expect("there");
         values.iter().map(|&x| f64::from(x)).sum::<f64>() / values.len() as f64
@@ -86,7 +86,7 @@ fn the_albedo_behind_a_pane_with_holes_counts_once() {
         [[object]]\nshape.quad = { center = [0, 0, 0], u = [9, 0, 0], v = [0, 9, 0] }\nmaterial = \"sheet\"\n\
         [[object]]\nshape.quad = { center = [0, 0, -1], u = [9, 0, 0], v = [0, 9, 0] }\nmaterial = \"wall\"\n\
         [[light]]\npoint = { position = [1, 1, 4], intensity = 10 }\n";
-    let albedo = rgb(&rendered(text, &[Layer::Albedo]), "albedo");
+    let albedo = rgb(&render_text(text, &[Layer::Albedo]), "albedo");
     let mean = albedo.iter().map(|rgb| rgb[1]).sum::<f64>() / albedo.len() as f64;
     // Each sample has an albedo of 1 or 0.8, at random.
     let sigma = 0.1 / libm::sqrt(256.0 * 256.0);
@@ -102,7 +102,7 @@ fn albedo_of_white_is_the_white_of_the_film() {
             .replace("film = { width = 16, height = 16 }", &film)
             .replace("vertical_fov = 40", "vertical_fov = 4")
             .replace("reflectance = 0.5", "reflectance = 1");
-        for pixel in rgb(&rendered(&text, &[Layer::Albedo]), "albedo") {
+        for pixel in rgb(&render_text(&text, &[Layer::Albedo]), "albedo") {
             let is_white = (0..3).all(|i| (pixel[i] - white[i]).abs() < 2e-4);
             assert!(is_white, "{space}: {pixel:?} for {white:?}");
         }

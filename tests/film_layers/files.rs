@@ -7,12 +7,17 @@ use abbe::{Options, Scene};
 use exr::prelude::{AttributeValue, FlatSamples, ReadChannels, ReadLayers, read};
 
 use super::ROOM;
-use crate::support::scenes::rendered;
+use crate::support::scenes::render_text;
 
 /// Each part's name, and its channels with their number of bits and their values.
 type Parts = Vec<(Option<String>, BTreeMap<String, (u32, Vec<f32>)>)>;
 
-fn written(precision: Precision, compression: Compression, multipart: bool, layers: &[Layer]) -> (Parts, Vec<u8>) {
+fn written_parts(
+    precision: Precision,
+    compression: Compression,
+    multipart: bool,
+    layers: &[Layer],
+) -> (Parts, Vec<u8>) {
     // Caustics would take most of the planning time, and planning most of the total time.
     let text = ROOM.replace("samples = 8", "samples = 2, caustics = \"off\"");
     let mut scene = Scene::parse(&text, "").expect("the scene is valid");
@@ -51,25 +56,28 @@ fn written(precision: Precision, compression: Compression, multipart: bool, laye
 
 #[test]
 fn a_plain_file_holds_the_image_alone() {
-    let (parts, _) = written(Precision::Float, Compression::Zip, false, &[]);
+    let (parts, _) = written_parts(Precision::Float, Compression::Zip, false, &[]);
     let names: Vec<_> = parts[0].1.keys().map(String::as_str).collect();
     assert_eq!((parts.len(), names), (1, vec!["A", "B", "G", "R", "Z"]));
 }
 
 #[test]
 fn every_lossless_compression_and_several_parts_hold_the_same_numbers() {
-    let (parts, bytes) = written(Precision::Float, Compression::Zip, false, &Layer::all());
+    let (parts, bytes) = written_parts(Precision::Float, Compression::Zip, false, &Layer::all());
     let all = &parts[0].1;
     assert!(all.values().all(|(bits, _)| *bits == 32) && all.contains_key("light_key_lamp.R"));
     assert!(bytes.windows("Émilie".len()).any(|window| window == "Émilie".as_bytes()));
     for compression in Compression::NAMES.into_iter().map(|(_, known)| known).filter(|known| !known.is_lossy()) {
         for multipart in [false, true] {
-            let (parts, bytes) = written(Precision::Float, compression, multipart, &Layer::all());
+            let (parts, bytes) = written_parts(Precision::Float, compression, multipart, &Layer::all());
             let together: BTreeMap<_, _> = parts.iter().flat_map(|(_, channels)| channels.clone()).collect();
             assert!(&together == all, "{compression:?}, several parts: {multipart}");
             if !multipart {
                 assert_eq!(parts.len(), 1);
-                assert!(bytes == written(Precision::Float, compression, multipart, &Layer::all()).1, "{compression:?}");
+                assert!(
+                    bytes == written_parts(Precision::Float, compression, multipart, &Layer::all()).1,
+                    "{compression:?}"
+                );
                 continue;
             }
             assert_eq!(parts[1].0.as_deref(), Some("depth"));
@@ -87,8 +95,8 @@ fn every_lossless_compression_and_several_parts_hold_the_same_numbers() {
 
 #[test]
 fn a_compression_that_loses_changes_colors_alone() {
-    let float = &written(Precision::Float, Compression::Zip, true, &Layer::all()).0;
-    let half = &written(Precision::Half, Compression::Zip, true, &Layer::all()).0;
+    let float = &written_parts(Precision::Float, Compression::Zip, true, &Layer::all()).0;
+    let half = &written_parts(Precision::Half, Compression::Zip, true, &Layer::all()).0;
     let is_color = |part: &str| {
         let data = ["depth", "albedo", "N", "Nd", "P", "UV", "variance", "samples", "half_a", "half_b"];
         !data.contains(&part) && !part.starts_with("Crypto")
@@ -98,8 +106,11 @@ fn a_compression_that_loses_changes_colors_alone() {
         (Precision::Half, Compression::Dwaa, half),
         (Precision::Half, Compression::Dwab, half),
     ] {
-        let (parts, bytes) = written(precision, compression, true, &Layer::all());
-        assert!(bytes == written(precision, compression, true, &Layer::all()).1, "{compression:?} has other bytes");
+        let (parts, bytes) = written_parts(precision, compression, true, &Layer::all());
+        assert!(
+            bytes == written_parts(precision, compression, true, &Layer::all()).1,
+            "{compression:?} has other bytes"
+        );
         for ((name, channels), (_, exact)) in parts.iter().zip(exact) {
             let name = name.as_ref().expect("each part has a name");
             assert!(is_color(name) || channels == exact, "{compression:?}: {name}");
@@ -117,7 +128,7 @@ fn a_compression_that_loses_changes_colors_alone() {
 
 #[test]
 fn a_lossy_file_of_one_part_holds_no_data() {
-    let asked = |compression, precision, multipart, layers: &[Layer]| {
+    let refusal = |compression, precision, multipart, layers: &[Layer]| {
         // Caustics would take most of the planning time, and planning most of the total time.
         let text = ROOM.replace("samples = 8", "samples = 2, caustics = \"off\"");
         let mut scene = Scene::parse(&text, "").expect("the scene is valid");
@@ -128,30 +139,30 @@ fn a_lossy_file_of_one_part_holds_no_data() {
     };
     let (half, float) = (Precision::Half, Precision::Float);
     let light = [Layer::Lights, Layer::Direct];
-    assert_eq!(asked(Compression::Dwaa, half, false, &light), None);
-    let kept = [Layer::Uv, Layer::Samples, Layer::CryptoObject];
-    assert_eq!(asked(Compression::Dwab, half, false, &kept), None);
-    let channels = |compression| written(half, compression, false, &kept).0.remove(0).1;
+    assert_eq!(refusal(Compression::Dwaa, half, false, &light), None);
+    let lossless_layers = [Layer::Uv, Layer::Samples, Layer::CryptoObject];
+    assert_eq!(refusal(Compression::Dwab, half, false, &lossless_layers), None);
+    let channels = |compression| written_parts(half, compression, false, &lossless_layers).0.remove(0).1;
     let (lossy, exact) = (channels(Compression::Dwab), channels(Compression::Zip));
     let is_exact = |name: &&String| name.contains('.') || ["A", "Z"].contains(&name.as_str());
     assert!(exact.keys().filter(is_exact).count() >= 6);
     assert!(exact.keys().filter(is_exact).all(|name| lossy[name] == exact[name]));
     assert!(lossy["R"] != exact["R"]);
-    assert_eq!(asked(Compression::Pxr24, float, true, &Layer::all()), None);
+    assert_eq!(refusal(Compression::Pxr24, float, true, &Layer::all()), None);
     for (compression, precision, layers, message) in [
         (Compression::Dwab, half, &[Layer::Albedo, Layer::Direct][..], "dwab alters data that must stay exact: albedo"),
         (Compression::Dwaa, half, &[Layer::Normal, Layer::HalfA], "dwaa alters data that must stay exact: N, half_a"),
         (Compression::Pxr24, half, &[Layer::Direct], "pxr24 alters data that must stay exact: Z"),
         (Compression::Dwaa, float, &[], "dwaa holds colors in 16 bits, not in 32"),
     ] {
-        assert_eq!(asked(compression, precision, false, layers), Some(format!("the compression {message}")));
+        assert_eq!(refusal(compression, precision, false, layers), Some(format!("the compression {message}")));
     }
 }
 
 #[test]
 fn half_precision_keeps_places_and_statistics_whole() {
-    let (float, _) = written(Precision::Float, Compression::Zip, false, &Layer::all());
-    let (half, _) = written(Precision::Half, Compression::Zip, false, &Layer::all());
+    let (float, _) = written_parts(Precision::Float, Compression::Zip, false, &Layer::all());
+    let (half, _) = written_parts(Precision::Half, Compression::Zip, false, &Layer::all());
     for (name, (bits, values)) in &half[0].1 {
         let exact = &float[0].1[name].1;
         let layer = name.rsplit_once('.').map_or(name.as_str(), |(layer, _)| layer);
@@ -177,7 +188,7 @@ fn o1_what_is_too_bright_for_half_precision_is_its_largest_number_and_is_counted
              film = {{ width = 4, height = 4, precision = \"half\" }}\nrender.samples = 1\n\
              light = [{{ environment = {{ radiance = {radiance} }} }}]\n"
         );
-        let image = rendered(&text);
+        let image = render_text(&text);
         assert_eq!(image.write_exr(&path).expect("it can be written"), clamped, "{radiance}");
         let file = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes();
         let file = file.from_file(&path).expect("it can be read");

@@ -3,12 +3,12 @@
 use abbe::Image;
 use abbe::film::Layer;
 
-use super::{beauty, rendered, rgb};
+use super::{beauty, render_text, rgb};
 
 const PIXELS: usize = 16;
 
 /// Renders a body that is hidden from the camera, with `rest` inside and behind it.
-fn within(body: &str, rest: &str, samples: u32) -> Image {
+fn render_hidden_body(body: &str, rest: &str, samples: u32) -> Image {
     let text = format!(
         "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 10 }}\nfilm = {{ width = 4, height = 4 }}\n\
          render = {{ samples = {samples}, model = \"rgb\" }}\n[material]\nbody.dielectric = {{ {body} }}\n\
@@ -16,7 +16,7 @@ fn within(body: &str, rest: &str, samples: u32) -> Image {
          sheet.mask = {{ material = \"black\", opacity = 0.25 }}\n\
          [[object]]\nshape.cube = {{ center = [0, 0, 0], size = 2 }}\nmaterial = \"body\"\nvisible_to_camera = false\n{rest}"
     );
-    rendered(&text, &[Layer::Residual])
+    render_text(&text, &[Layer::Residual])
 }
 
 fn mean(colors: &[[f64; 3]]) -> f64 {
@@ -30,7 +30,7 @@ fn a_white_ball_in_a_hidden_body_is_as_bright_as_the_sky_around_both() {
     const SAMPLES: u32 = 1024;
     let ball = "[[object]]\nshape.sphere = { center = [0, 0, 0], radius = 0.6 }\nmaterial = \"white\"\n\
         [[light]]\nenvironment = { radiance = 1 }\n";
-    let image = within("index = 1.5", ball, SAMPLES);
+    let image = render_hidden_body("index = 1.5", ball, SAMPLES);
     let (shown, lost) = (mean(&beauty(&image)), mean(&rgb(&image, "residual")));
     // Russian roulette is the only source of noise. It is at most as bright as the paths that are followed in place of
     // those it ends, so the error of a sample is less than 1/4, root mean square.
@@ -43,7 +43,7 @@ fn behind_holes_in_a_hidden_body_the_camera_sees_as_if_that_were_not_there() {
     let sheet = "[[object]]\nshape.quad = { center = [0, 0, 0], u = [0.8, 0, 0], v = [0, 0.8, 0] }\nmaterial = \"sheet\"\n\
         [[object]]\nshape.quad = { center = [0, 0, -2], u = [3, 0, 0], v = [0, 3, 0] }\nmaterial = \"lamp\"\n";
     for body in ["index = 1, absorption = 1", "index = 1.5, absorption = 0.5"] {
-        for color in beauty(&within(body, sheet, 4)) {
+        for color in beauty(&render_hidden_body(body, sheet, 4)) {
             assert!((color[1] - 0.75 * 2.0).abs() < 1e-6, "{body}: {color:?}");
         }
     }
@@ -72,7 +72,7 @@ fn what_the_camera_does_not_see_is_hidden_behind_holes_and_panes_and_not_in_mirr
                      black.diffuse.reflectance = 0\nfront.{front}\n\
                      [[object]]\nshape.{shape}\nmaterial = \"front\"\n{around}{visibility}"
                 );
-                for color in beauty(&rendered(&text, &[Layer::Residual])) {
+                for color in beauty(&render_text(&text, &[Layer::Residual])) {
                     assert!((color[1] - 2.0 * share).abs() < 1e-5, "{front}, {around}{visibility}: {color:?}");
                 }
             }

@@ -2,7 +2,7 @@
 
 use abbe::film::Layer;
 
-use super::{assert_sum, beauty, rendered, rgb};
+use super::{assert_sum, beauty, render_text, rgb};
 
 /// A caustic in glass, seen by a camera that looks through the surface of water that the glass displaces. Photons are
 /// gathered where the camera's ray first scatters. Some of them come straight from the lamp and cross only that
@@ -48,13 +48,13 @@ const LOBES: [Layer; 9] = [
 
 #[test]
 fn photons_that_are_gathered_at_the_first_surface_have_its_lobes_and_are_direct_where_they_come_straight() {
-    let image = rendered(BEHIND_HIDDEN_WATER, &[LOBES.as_slice(), &[Layer::Caustics]].concat());
+    let image = render_text(BEHIND_HIDDEN_WATER, &[LOBES.as_slice(), &[Layer::Caustics]].concat());
     let total = |layer: &str| rgb(&image, layer).iter().flatten().sum::<f64>();
     let all = beauty(&image).iter().flatten().sum::<f64>();
     assert!(total("caustics") > 0.3 * all && total("diffuse_direct") > 0.1 * all, "{} of {all}", total("caustics"));
     assert_sum(&image, &LOBES.map(Layer::name), 1.0);
     // The result does not depend on which other layers are asked for.
-    let plain = rendered(BEHIND_HIDDEN_WATER, &[Layer::Direct]);
+    let plain = render_text(BEHIND_HIDDEN_WATER, &[Layer::Direct]);
     let direct = rgb(&plain, "direct").iter().flatten().sum::<f64>();
     assert!((direct / total("diffuse_direct") - 1.0).abs() < 1e-5, "{direct}");
 }
@@ -63,7 +63,7 @@ fn photons_that_are_gathered_at_the_first_surface_have_its_lobes_and_are_direct_
 #[test]
 fn photons_that_are_shown_are_direct_where_they_come_straight() {
     let below = BEHIND_HIDDEN_WATER.replace("position = [0, 1, 1.5]", "position = [0, 0.2, 1.4]");
-    let image = rendered(
+    let image = render_text(
         &below.replace("radius = 0.1 ", "radius = 0.05 "),
         &[Layer::Direct, Layer::DiffuseDirect, Layer::Caustics],
     );

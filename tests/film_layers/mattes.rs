@@ -3,7 +3,7 @@
 use abbe::Image;
 use abbe::film::Layer;
 
-use super::{id, rendered, rgb};
+use super::{id, render_text, rgb};
 
 const PIXELS: usize = 36;
 const SAMPLES: usize = 256;
@@ -15,18 +15,18 @@ fn card_over_floor(floor: &str, card: &str, opacity: [f64; 2]) -> Image {
 
 /// Renders a floor seen from above through a card of any material. The lamp is below the card.
 fn seen_through(of: &str, floor: &str, card: &str, opacity: [f64; 2]) -> Image {
-    let [of_floor, of_card] = opacity;
+    let [floor_coverage, card_coverage] = opacity;
     let text = format!(
         "camera = {{ projection = \"orthographic\", height = 0.2, position = [0, 5, 0], look_at = [0, 0, 0], \
          up = [0, 0, -1] }}\nfilm = {{ width = 6, height = 6 }}\nrender = {{ samples = {SAMPLES} }}\n[material]\n\
          gray.diffuse.reflectance = 0.5\npaper.{of}\n\
-         floor.mask = {{ material = \"gray\", opacity = {of_floor} }}\n\
-         card.mask = {{ material = \"paper\", opacity = {of_card} }}\n\
+         floor.mask = {{ material = \"gray\", opacity = {floor_coverage} }}\n\
+         card.mask = {{ material = \"paper\", opacity = {card_coverage} }}\n\
          [[object]]\n{floor}shape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"floor\"\n\
          [[object]]\n{card}shape.quad = {{ center = [0, 3, 0], u = [0.5, 0, 0], v = [0, 0, 0.5] }}\nmaterial = \"card\"\n\
          [[light]]\npoint = {{ position = [2, 2, 0], intensity = 10 }}\n"
     );
-    rendered(&text, &[Layer::Shadow, Layer::Residual])
+    render_text(&text, &[Layer::Shadow, Layer::Residual])
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -55,8 +55,8 @@ fn a_shadow_catcher_seen_through_holes_shows_no_light_of_its_own() {
     for opacity in [0.1, 0.5, 0.9] {
         let image = card_over_floor("shadow_catcher = true\n", "", [1.0, opacity]);
         assert!(image.rgb().iter().all(|rgb| *rgb == [0.0; 3]), "{opacity}: {:?}", image.rgb()[0]);
-        let of_card = coverage(&image);
-        assert!((of_card - opacity).abs() < five_sigma(opacity), "{of_card} of {opacity}");
+        let card_coverage = coverage(&image);
+        assert!((card_coverage - opacity).abs() < five_sigma(opacity), "{card_coverage} of {opacity}");
         assert!(rgb(&image, "shadow").as_flattened().iter().all(|share| share.abs() < 1e-5), "{opacity}");
         assert_all_is_accounted_for(&image);
         // A catcher with holes of its own is just as clear.
@@ -84,10 +84,10 @@ fn a_pane_with_holes_shows_a_shadow_catcher_where_it_is() {
     for opacity in [0.2, 0.5] {
         let pane = "thin = { index = 1, transmittance = 0.2 }";
         let image = seen_through(pane, "shadow_catcher = true\n", "", [1.0, opacity]);
-        let (of_card, shown) = (coverage(&image), red(&image) / (0.2 * open));
-        assert!((of_card - opacity).abs() < five_sigma(opacity), "{of_card} of {opacity}");
+        let (card_coverage, shown) = (coverage(&image), red(&image) / (0.2 * open));
+        assert!((card_coverage - opacity).abs() < five_sigma(opacity), "{card_coverage} of {opacity}");
         // The pixels differ a little in brightness.
-        assert!((shown / of_card - 1.0).abs() < 1e-3, "{shown} through {of_card}");
+        assert!((shown / card_coverage - 1.0).abs() < 1e-3, "{shown} through {card_coverage}");
     }
 }
 
@@ -125,10 +125,10 @@ fn a_caustic_behind_a_pane_that_is_held_out_is_hidden() {
         )
     };
     let caustics = |image: &Image| rgb(image, "caustics").as_flattened().iter().sum::<f64>();
-    let shown = rendered(&text(""), &[Layer::Caustics]);
+    let shown = render_text(&text(""), &[Layer::Caustics]);
     assert!(shown.because().iter().any(|line| line.starts_with("photon")), "{:?}", shown.because());
     assert!(caustics(&shown) > 0.0);
-    let hidden = rendered(&text("holdout = true\n"), &[Layer::Caustics]);
+    let hidden = render_text(&text("holdout = true\n"), &[Layer::Caustics]);
     assert!(hidden.rgb().as_flattened().iter().all(|&x| x == 0.0), "light comes through");
     assert_eq!(caustics(&hidden), 0.0);
 }
@@ -167,7 +167,7 @@ fn a_caustic_on_what_stands_for_the_plate_is_seen_through_panes() {
              [[object]]\nshape.quad = {{ center = [0, 3, 3], u = [9, 0, 0], v = [0, 9, -9] }}\nmaterial = \"pane\"\n\
              [[light]]\npoint = {{ position = [3, 4, 0], intensity = 10 }}\n"
         );
-        rendered(&text, &[Layer::Caustics])
+        render_text(&text, &[Layer::Caustics])
     };
     let caustics = |image: &Image| rgb(image, "caustics").as_flattened().iter().sum::<f64>();
     let [whole, half] = [1.0, 0.5].map(|opacity| caustics(&image("", opacity)));
@@ -194,7 +194,7 @@ fn a_shadow_catcher_seen_through_a_lamp_that_the_camera_does_not_see_shows_the_s
              [[object]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"gray\"\n\
              shadow_catcher = true\n{more}"
         );
-        coverage(&rendered(&text, &[Layer::Shadow]))
+        coverage(&render_text(&text, &[Layer::Shadow]))
     };
     assert_eq!(shadow(""), 0.0);
     let disc = "[[object]]\nshape.disc = { center = [0, 1, 0], normal = [0, 1, 0], radius = 0.25 }\n\
@@ -221,7 +221,7 @@ fn sheets_before_a_wall(count: u32, opacity: f64, more: &str) -> Image {
          material = \"white\"\n[[light]]\npoint = {{ position = [1, 1, 4], intensity = 10 }}\n",
         (0..count).map(sheet).collect::<String>()
     );
-    rendered(&text, &[Layer::CryptoObject, Layer::Normal, Layer::Residual])
+    render_text(&text, &[Layer::CryptoObject, Layer::Normal, Layer::Residual])
 }
 
 #[test]

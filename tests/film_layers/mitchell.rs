@@ -5,9 +5,9 @@ use abbe::film::{Film, Filter, Layer, Mitchell};
 use abbe::plan::plan;
 use abbe::trace::{LightPass, Method, Smoothness};
 
-use super::{ROOM, assert_sum, rendered, rgb_of};
+use super::{ROOM, assert_sum, render_text, rgb_of};
 use crate::support::larger::larger;
-use crate::support::scenes::{film_of, films_of, moments, scene, standard_errors};
+use crate::support::scenes::{film_of, films_of, mean_and_variance, scene, sigma_limit};
 
 /// Pixels along each side of images of an edge.
 const SIDE: usize = 8;
@@ -58,12 +58,12 @@ fn an_edge_is_the_integral_of_the_filter_for_few_samples_and_many() {
         for place in 0..SIDE * SIDE {
             let at = |axis: usize, i: usize| integral(b, c, EDGE[axis] - i as f64 - 0.5);
             let expected = at(0, place % SIDE) * at(1, place / SIDE);
-            let (mean, variance) = moments(films.iter().map(|film| f64::from(film.pixels[place].rgb[1])));
+            let (mean, variance) = mean_and_variance(films.iter().map(|film| f64::from(film.pixels[place].rgb[1])));
             // Adds one more sample on the square, for pixels where hardly any sample hits it, and the rounding to 32
             // bits.
             let error = (variance / seeds as f64).sqrt() + one / (f64::from(samples) * seeds as f64) + 1e-7;
             let z = (mean - expected).abs() / error;
-            assert!(z < standard_errors(5 * SIDE * SIDE), "b {b}, c {c}, pixel {place}: {mean} is {z} off {expected}");
+            assert!(z < sigma_limit(5 * SIDE * SIDE), "b {b}, c {c}, pixel {place}: {mean} is {z} off {expected}");
             beyond += u32::from(!(0.0..=1.0).contains(&expected));
             noisy += u32::from(variance > 1e-9);
         }
@@ -101,7 +101,7 @@ fn an_even_image_has_no_noise() {
 fn halves_of_an_even_image_have_no_noise() {
     let sky = corner("\"mitchell\"", "light = [{ environment = { radiance = 1 } }]\n");
     for samples in [4, 16, 17, 100] {
-        let image = rendered(&format!("{sky}render.samples = {samples}\n"), &[Layer::HalfA, Layer::HalfB]);
+        let image = render_text(&format!("{sky}render.samples = {samples}\n"), &[Layer::HalfA, Layer::HalfB]);
         for half in ["half_a.G", "half_b.G"] {
             let worst =
                 image.layer(half).expect("a layer").into_iter().fold(0.0, |most: f32, x| larger(most, (x - 1.0).abs()));
@@ -111,7 +111,7 @@ fn halves_of_an_even_image_have_no_noise() {
 }
 
 fn room() -> Image {
-    rendered(&ROOM.replace("height = 28", "height = 28, filter = \"mitchell\""), &Layer::all())
+    render_text(&ROOM.replace("height = 28", "height = 28, filter = \"mitchell\""), &Layer::all())
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn layers_of_light_add_up_to_a_sharpened_image() {
 }
 
 #[test]
-fn what_is_met_is_told_by_what_is_added_alone() {
+fn surface_layers_count_only_samples_of_positive_weight() {
     let image = room();
     let layer = |name: &str| image.layer(name).unwrap_or_else(|| panic!("no layer {name}"));
     let within = |name: &str, low: f32, high: f32| {
@@ -160,7 +160,7 @@ fn what_is_met_is_told_by_what_is_added_alone() {
 #[test]
 fn layers_change_no_bit_of_a_sharpened_image() {
     let text = ROOM.replace("height = 28", "height = 28, filter = \"mitchell\"");
-    let (plain, layered) = (rendered(&text, &[]), room());
+    let (plain, layered) = (render_text(&text, &[]), room());
     for channel in ["R", "G", "B", "A", "Z"] {
         assert!(plain.layer(channel) == layered.layer(channel), "{channel}");
     }
@@ -178,13 +178,13 @@ fn the_variance_is_that_of_the_sharpened_image() {
     let mut scene = scene(text);
     scene.format.layers = vec![Layer::Variance];
     let films = films_of(&scene, &plan(&scene).method, 0..48);
-    let (mut seen, mut said) = (0.0, 0.0);
+    let (mut seen, mut predicted) = (0.0, 0.0);
     for place in 0..36 {
-        seen += moments(films.iter().map(|film| f64::from(film.pixels[place].rgb[1]))).1;
-        said += films.iter().map(|film| rgb_of(film, "variance", place, 1)).sum::<f64>() / films.len() as f64;
+        seen += mean_and_variance(films.iter().map(|film| f64::from(film.pixels[place].rgb[1]))).1;
+        predicted += films.iter().map(|film| rgb_of(film, "variance", place, 1)).sum::<f64>() / films.len() as f64;
     }
     // As with any filter, evenly spread samples make the image less noisy than random ones.
-    assert!(said / seen > 0.9 && said / seen < 2.5, "{said} is said, {seen} is seen");
+    assert!(predicted / seen > 0.9 && predicted / seen < 2.5, "{predicted} is said, {seen} is seen");
 }
 
 /// A mirror sends photons to the middle of a floor. With any filter, the pixels together receive all of their light.

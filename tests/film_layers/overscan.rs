@@ -4,13 +4,13 @@ use abbe::film::{Film, Layer, Overscan, Window};
 use abbe::{Image, Options};
 
 use super::{ROOM, rgb};
-use crate::support::scenes::rendered_with;
+use crate::support::scenes::render_text_with;
 
-const AROUND: Overscan = Overscan { left: 5, top: 17, right: 18, bottom: 1 };
+const OVERSCAN: Overscan = Overscan { left: 5, top: 17, right: 18, bottom: 1 };
 
-fn made(text: &str, overscan: Option<Overscan>, crop: Option<Window>, threads: usize) -> Image {
+fn render_window(text: &str, overscan: Option<Overscan>, crop: Option<Window>, threads: usize) -> Image {
     let options = Options { overscan, crop, layers: Some(Layer::all()), threads: Some(threads), ..Options::default() };
-    rendered_with(text, &options)
+    render_text_with(text, &options)
 }
 
 fn window(film: &Film) -> Window {
@@ -20,12 +20,12 @@ fn window(film: &Film) -> Window {
 /// Returns the bits of everything that a film stores for the pixels of a window: the numbers of the image and of every
 /// layer.
 fn bits(film: &Film, of: Window) -> Vec<u32> {
-    let there = window(film);
-    assert!(there.holds(&of), "{there:?} does not hold {of:?}");
+    let stored = window(film);
+    assert!(stored.holds(&of), "{stored:?} does not hold {of:?}");
     let mut all = Vec::new();
     for y in of.top..of.top + of.height as i32 {
         for x in of.left..of.left + of.width as i32 {
-            let at = (y - there.top) as usize * there.width as usize + (x - there.left) as usize;
+            let at = (y - stored.top) as usize * stored.width as usize + (x - stored.left) as usize;
             let pixel = film.pixels[at];
             all.extend(pixel.rgb);
             all.extend([pixel.alpha, pixel.depth, pixel.samples]);
@@ -43,7 +43,7 @@ fn overscan_changes_no_bit_of_the_format_and_crops_are_parts_of_both() {
     let filtered = ROOM.replace("height = 28", "height = 28, filter = \"mitchell\"");
     let catcher = ROOM.replace("name = \"floor\"\n", "name = \"floor\"\nshadow_catcher = true\n");
     for text in [ROOM, &filtered, &catcher] {
-        let (plain, wide) = (made(text, None, None, 1), made(text, Some(AROUND), None, 3));
+        let (plain, wide) = (render_window(text, None, None, 1), render_window(text, Some(OVERSCAN), None, 3));
         let (format, all) = (window(plain.film()), window(wide.film()));
         assert_eq!(all, Window { left: -5, top: -17, width: format.width + 23, height: format.height + 18 });
         assert_eq!(wide.film().full, [format.width, format.height]);
@@ -54,12 +54,12 @@ fn overscan_changes_no_bit_of_the_format_and_crops_are_parts_of_both() {
             Window { left: all.width as i32 - 6, top: 0, width: 1, height: 5 },
         ];
         for crop in crops.into_iter().take(if text == ROOM { 3 } else { 1 }) {
-            let part = made(text, Some(AROUND), Some(crop), 2);
+            let part = render_window(text, Some(OVERSCAN), Some(crop), 2);
             assert_eq!(window(part.film()), crop);
             assert!(bits(part.film(), crop) == bits(wide.film(), crop), "{crop:?} has other bits");
         }
     }
-    let room = made(ROOM, Some(AROUND), None, 1);
+    let room = render_window(ROOM, Some(OVERSCAN), None, 1);
     for photons in ["photon tracing: ", "photon map: "] {
         assert!(room.because().iter().any(|line| line.starts_with(photons)), "{:?}", room.because());
     }
@@ -70,13 +70,13 @@ fn overscan_changes_no_bit_of_the_format_and_crops_are_parts_of_both() {
 #[test]
 fn overscan_shows_what_a_wider_view_shows() {
     let samples = |text: &str| text.replace("samples = 8", "samples = 64");
-    let wide = made(&samples(ROOM), Some(Overscan::even(14)), None, 2);
+    let wide = render_window(&samples(ROOM), Some(Overscan::even(14)), None, 2);
     let angle = 2.0 * (2.0 * libm::tan(19.0_f64.to_radians())).atan().to_degrees();
     let larger = samples(ROOM)
         .replace("width = 40, height = 28", "width = 68, height = 56")
         .replace("vertical_fov = 38", &format!("vertical_fov = {angle:?}"))
         .replace("seed = 5", "seed = 6");
-    let larger = made(&larger, None, None, 2);
+    let larger = render_window(&larger, None, None, 2);
     assert_eq!((wide.width(), wide.height()), (larger.width(), larger.height()));
     for layer in ["direct", "indirect", "caustics", "background"] {
         let ring = |place: usize| {
@@ -90,8 +90,9 @@ fn overscan_shows_what_a_wider_view_shows() {
         };
         let variance = |image: &Image| {
             let variance = rgb(image, "variance");
-            let of_ring: Vec<f64> = (0..variance.len()).filter(|at| ring(*at)).map(|at| variance[at][1]).collect();
-            of_ring.iter().sum::<f64>() / (of_ring.len() * of_ring.len()) as f64
+            let ring_variances: Vec<f64> =
+                (0..variance.len()).filter(|at| ring(*at)).map(|at| variance[at][1]).collect();
+            ring_variances.iter().sum::<f64>() / (ring_variances.len() * ring_variances.len()) as f64
         };
         let off = mean(&wide) - mean(&larger);
         let deviation = (variance(&wide) + variance(&larger)).sqrt();
@@ -108,10 +109,10 @@ fn depths(camera: &str, film: &str) -> Image {
          material.lamp.emissive.radiance = 1\n\
          object = [{{ shape.plane = {{ point = [0, 0, -4], normal = [0.1, 0.2, 1] }}, material = \"lamp\" }}]\n"
     );
-    rendered_with(&text, &Options { layers: Some(vec![Layer::Position]), ..Options::default() })
+    render_text_with(&text, &Options { layers: Some(vec![Layer::Position]), ..Options::default() })
 }
 
-fn places(image: &Image) -> Vec<[f32; 3]> {
+fn positions(image: &Image) -> Vec<[f32; 3]> {
     let [x, y, z] = ["P.X", "P.Y", "P.Z"].map(|name| image.layer(name).expect("places"));
     (0..x.len()).map(|at| [x[at], y[at], z[at]]).collect()
 }
@@ -136,7 +137,7 @@ fn a_pixel_of_the_overscan_looks_where_one_of_a_larger_format_does() {
     ] {
         let around = depths(&camera, "width = 8, height = 6, overscan = [8, 6, 8, 6]");
         let larger = depths(&larger, "width = 24, height = 18");
-        for (a, b) in places(&around).iter().zip(places(&larger)) {
+        for (a, b) in positions(&around).iter().zip(positions(&larger)) {
             let size = b.iter().fold(1.0_f32, |size, x| size.max(x.abs()));
             assert!((0..3).all(|i| (a[i] - b[i]).abs() <= 8.0 * f32::EPSILON * size), "{camera}: {a:?} is not {b:?}");
         }
@@ -147,21 +148,21 @@ fn a_pixel_of_the_overscan_looks_where_one_of_a_larger_format_does() {
 #[test]
 fn overscan_of_a_view_all_around_is_its_other_side() {
     let image = depths("projection = \"equirectangular\"", "width = 16, height = 8, overscan = [3, 2, 4, 2]");
-    let places = places(&image);
-    let at = |x: i32, y: i32| places[((y + 2) * 23 + x + 3) as usize];
+    let positions = positions(&image);
+    let at = |x: i32, y: i32| positions[((y + 2) * 23 + x + 3) as usize];
     let same = |a: [f32; 3], b: [f32; 3]| (0..3).all(|i| (a[i] - b[i]).abs() <= 1e-4 * b[i].abs().max(1.0));
-    let mut met = 0;
+    let mut hits = 0;
     for y in 0..8 {
         for x in (-3..0).chain(16..20) {
             assert!(same(at(x, y), at(x.rem_euclid(16), y)), "{x}, {y}");
-            met += u32::from(at(x, y) != [0.0; 3]);
+            hits += u32::from(at(x, y) != [0.0; 3]);
         }
     }
     for x in 0..16 {
         for (beyond, within) in [(-1, 0), (-2, 1), (8, 7), (9, 6)] {
             assert!(same(at(x, beyond), at((x + 8) % 16, within)), "{x}, {beyond}");
-            met += u32::from(at(x, beyond) != [0.0; 3]);
+            hits += u32::from(at(x, beyond) != [0.0; 3]);
         }
     }
-    assert!(met > 30, "only {met} pixels meet anything");
+    assert!(hits > 30, "only {hits} pixels meet anything");
 }

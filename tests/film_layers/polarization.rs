@@ -4,8 +4,8 @@ use abbe::Scene;
 use abbe::film::{Layer, polarization};
 use abbe::spectrum::ColorSpace;
 
-use super::{ROOM, beauty, rendered, rgb};
-use crate::support::scenes::SHEETS;
+use super::{ROOM, beauty, render_text, rgb};
+use crate::support::scenes::POLARIZING_SHEETS;
 
 #[test]
 fn degrees_and_angles_are_those_of_the_sums_of_stokes_vectors() {
@@ -13,7 +13,7 @@ fn degrees_and_angles_are_those_of_the_sums_of_stokes_vectors() {
     // Photons are splatted and gathered, and some samples are subtracted.
     for (filter, space) in [("box", ColorSpace::Rec709), ("mitchell", ColorSpace::AcesCg)] {
         let film = format!("height = 28, filter = \"{filter}\", color_space = \"{}\"", space.interop_id());
-        let image = rendered(&(ROOM.replace("height = 28", &film) + SHEETS), &all);
+        let image = render_text(&(ROOM.replace("height = 28", &film) + POLARIZING_SHEETS), &all);
         let weights = space.to_xyz()[1];
         let luminance = |rgb: [f64; 3]| (0..3).map(|c| weights[c] * rgb[c]).sum::<f64>();
         let [s1, s2, s3] = ["S1", "S2", "S3"].map(|layer| rgb(&image, layer));
@@ -39,7 +39,7 @@ fn degrees_and_angles_are_those_of_the_sums_of_stokes_vectors() {
 #[test]
 fn degrees_and_angles_need_no_other_layer() {
     let all = Layer::STOKES.into_iter().chain([Layer::Polarization]).collect::<Vec<_>>();
-    let (both, alone) = (rendered(ROOM, &all), rendered(ROOM, &[Layer::Polarization]));
+    let (both, alone) = (render_text(ROOM, &all), render_text(ROOM, &[Layer::Polarization]));
     for channel in ["R", "polarization.degree", "polarization.linear_degree", "polarization.angle"] {
         assert!(both.layer(channel) == alone.layer(channel), "{channel}");
     }
@@ -59,7 +59,7 @@ fn stokes_vectors_that_the_film_asks_for_stay_whatever_other_layers_are_asked_fo
     let film = ROOM.replace("height = 28", "height = 28, stokes = true, layers = [\"albedo\"]");
     let scene = Scene::parse(&film, "").expect("valid");
     assert_eq!(scene.format.layers, [Layer::Albedo, Layer::S1, Layer::S2, Layer::S3]);
-    let image = rendered(&film, &[Layer::Normal, Layer::S2]);
+    let image = render_text(&film, &[Layer::Normal, Layer::S2]);
     assert!(["N.X", "S1.R", "S2.R", "S3.R"].into_iter().all(|channel| image.layer(channel).is_some()));
     assert!(image.layer("albedo.R").is_none());
 }

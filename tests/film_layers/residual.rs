@@ -4,9 +4,9 @@ use abbe::film::Layer;
 use abbe::trace::{self, Method};
 use abbe::{Image, Scene, plan::plan};
 
-use super::{ROOM, rendered, rgb};
+use super::{ROOM, render_text, rgb};
 use crate::support::larger::larger;
-use crate::support::scenes::moments;
+use crate::support::scenes::mean_and_variance;
 
 /// Clear glass, absorbing glass, glass in water, a pane, a mirror and gold: no light path is random.
 const SPECULAR: &str = r#"
@@ -48,7 +48,7 @@ fn residual(image: &Image) -> Vec<[f64; 3]> {
 /// Returns the mean of each channel over the pixels and its distance from 0 in standard errors.
 fn mean_and_z(residual: &[[f64; 3]]) -> [(f64, f64); 3] {
     [0, 1, 2].map(|channel| {
-        let (mean, variance) = moments(residual.iter().map(|rgb| rgb[channel]));
+        let (mean, variance) = mean_and_variance(residual.iter().map(|rgb| rgb[channel]));
         (mean, if variance > 0.0 { mean / (variance / residual.len() as f64).sqrt() } else { 0.0 })
     })
 }
@@ -57,7 +57,7 @@ fn mean_and_z(residual: &[[f64; 3]]) -> [(f64, f64); 3] {
 fn without_chance_all_weight_is_accounted_for_in_every_pixel() {
     for model in ["\"auto\"", "\"rgb\"", "{ bands = 12 }", "{ bands = 32 }"] {
         let scene = SPECULAR.replace("render = {}", &format!("render.model = {model}"));
-        let image = rendered(&scene, &[Layer::Residual]);
+        let image = render_text(&scene, &[Layer::Residual]);
         assert!(image.because().iter().any(|line| line.contains("transport deterministic")), "{:?}", image.because());
         let worst = residual(&image).as_flattened().iter().fold(0.0, |most: f64, x| larger(most, x.abs()));
         assert!(worst <= 1e-6, "model {model}: {worst}");
@@ -68,7 +68,7 @@ fn without_chance_all_weight_is_accounted_for_in_every_pixel() {
 #[test]
 fn a_limit_of_eight_bounces_shows_where_it_cuts() {
     let scene = SPECULAR.replace("render = {}", "render.max_bounces = 8");
-    let image = rendered(&scene, &[Layer::Residual]);
+    let image = render_text(&scene, &[Layer::Residual]);
     let residual = residual(&image);
     let bright = residual.iter().filter(|rgb| rgb[1] > 1e-3).count();
     assert!((10..residual.len() / 2).contains(&bright), "{bright} pixels");
@@ -91,7 +91,7 @@ fn by_chance_the_mean_is_nothing() {
     ];
     for (more, model) in more.into_iter().zip(["hero", "auto"]) {
         let scene = ROOM.replace("samples = 8", &format!("samples = 32, model = \"{model}\"")) + more;
-        let image = rendered(&scene, &[Layer::Residual]);
+        let image = render_text(&scene, &[Layer::Residual]);
         let found = mean_and_z(&residual(&image));
         assert!(found.iter().all(|(_, z)| z.abs() <= 3.0), "{more}: {found:?}");
         assert!(residual(&image).as_flattened().iter().any(|&x| x.abs() > 1e-3), "nothing was left to chance");
@@ -145,7 +145,7 @@ fn light_vertices_end_paths_and_a_limit_of_diffuse_bounces_loses_them() {
 #[test]
 fn a_filter_before_the_camera_is_accounted_for() {
     let behind = |scene: &str| scene.replacen("vertical_fov = 30", "vertical_fov = 30, polarizer = { axis = 20 }", 1);
-    let image = rendered(&behind(SPECULAR), &[Layer::Residual]);
+    let image = render_text(&behind(SPECULAR), &[Layer::Residual]);
     let worst = residual(&image).as_flattened().iter().fold(0.0, |most: f64, x| larger(most, x.abs()));
     assert!(worst <= 1e-6, "{worst}");
     let floor = "camera = { position = [0, 1, 5], look_at = [0, 0.5, 0], vertical_fov = 30 }\n\
@@ -153,7 +153,7 @@ fn a_filter_before_the_camera_is_accounted_for() {
                  light = [{ environment.radiance = 1 }]\n\
                  material.paint.diffuse.reflectance = { rgb = [0.2, 0.3, 0.4] }\n\
                  [[object]]\nshape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }\nmaterial = \"paint\"\n";
-    let [bare, behind] = [floor, &behind(floor)].map(|scene| rendered(scene, &[Layer::Albedo, Layer::Normal]));
+    let [bare, behind] = [floor, &behind(floor)].map(|scene| render_text(scene, &[Layer::Albedo, Layer::Normal]));
     for channel in ["albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z"] {
         let [bare, behind] = [&bare, &behind].map(|image| image.layer(channel).expect("it was asked for"));
         assert!(bare.iter().any(|&x| x != 0.0) || matches!(channel, "N.X" | "N.Z"), "{channel} is empty");

@@ -12,7 +12,7 @@ use crate::support::scenes::{EVERY_BRANCH, body, film_of, quad, scene, view};
 
 /// Returns the XYZ of a material relative to a perfect mirror, which reflects a D65 lamp at an angle in degrees, and
 /// the name of the basis that the plan chose.
-fn mirrored(material: &str, degrees: f64) -> ([f64; 3], String) {
+fn reflected_color(material: &str, degrees: f64) -> ([f64; 3], String) {
     let (y, x) = degrees.to_radians().sin_cos();
     let center = [-6.0 * y, 0.0, 6.0 * x];
     let lamp = quad(center, [2.0 * x, 0.0, 2.0 * y], [0.0, 2.0, 0.0]);
@@ -34,7 +34,7 @@ fn lab(xyz: [f64; 3]) -> [f64; 3] {
     colors::lab(xyz, apply(&ColorSpace::Rec709.to_xyz(), [1.0; 3]))
 }
 
-fn of_xy(y: f64, chromaticity: [f64; 2]) -> [f64; 3] {
+fn lab_of_xy(y: f64, chromaticity: [f64; 2]) -> [f64; 3] {
     let [x, small_y] = chromaticity;
     lab([x / small_y * y, y, (1.0 - x - small_y) / small_y * y])
 }
@@ -58,8 +58,8 @@ fn soap_has_its_colors() {
     for (thickness, straight, slanting) in SOAP {
         let material = format!("thin = {{ index = 1.33, thickness_nm = {thickness:?} }}");
         for (degrees, [y, x, small_y]) in [(0.0, straight), (45.0, slanting)] {
-            let (found, model) = mirrored(&material, degrees);
-            let off = difference(lab(found), of_xy(y, [x, small_y]));
+            let (found, model) = reflected_color(&material, degrees);
+            let off = difference(lab(found), lab_of_xy(y, [x, small_y]));
             println!("{thickness} nm at {degrees} degrees, {model}: {off:.3}");
             assert!(off < 0.5, "{thickness} nm at {degrees} degrees in {model}: {off}, {found:?}");
         }
@@ -85,7 +85,7 @@ const OXIDE: [(f64, [f64; 3]); 11] = [
 fn titanium_has_the_colors_of_its_oxide() {
     for (thickness, expected) in OXIDE {
         let coating = format!("[{{ index = 2.4, thickness_nm = {thickness:?} }}]");
-        let (found, model) = mirrored(&format!("conductor = {{ metal = \"Ti\", coating = {coating} }}"), 0.0);
+        let (found, model) = reflected_color(&format!("conductor = {{ metal = \"Ti\", coating = {coating} }}"), 0.0);
         let off = difference(lab(found), expected);
         println!("{thickness} nm in {model}: {off:.3}");
         assert!(off < 0.5, "{thickness} nm in {model}: {off}, {:?}", lab(found));
@@ -135,12 +135,14 @@ fn colors_through_slabs_coated_on_both_faces_are_missed_by_no_more_than_the_plan
             let (bound, name) = (candidate.bound(), candidate.basis.name());
             let method = Method { basis: candidate.basis, ..crate::support::scenes::method(&scene, EVERY_BRANCH) };
             let rgb = film_of(&scene, method).pixels[0].rgb.map(f64::from);
-            let missed = (0..3).fold(0.0_f64, |most, c| larger(most, (rgb[c] - exact[c]).abs())) / strongest;
-            println!("scene {number}, {count} layers around {middle:.0} nm, {name}: misses {missed:.5} of {bound:.5}");
-            ratios.push(missed / bound.max(1e-6));
+            let color_error = (0..3).fold(0.0_f64, |most, c| larger(most, (rgb[c] - exact[c]).abs())) / strongest;
+            println!(
+                "scene {number}, {count} layers around {middle:.0} nm, {name}: misses {color_error:.5} of {bound:.5}"
+            );
+            ratios.push(color_error / bound.max(1e-6));
             assert!(
-                missed <= bound + 1e-5,
-                "scene {number}, {count} layers, {name}: misses {missed:.5}, stated {bound:.5}"
+                color_error <= bound + 1e-5,
+                "scene {number}, {count} layers, {name}: misses {color_error:.5}, stated {bound:.5}"
             );
         }
     }

@@ -5,7 +5,7 @@ use abbe::material::{Index, Lobes, Material, ScatterContext};
 use abbe::spectrum::{Draw, Table};
 
 use super::reference::shares;
-use crate::support::arrivals::{self, context, material, toward};
+use crate::support::arrivals::{self, context, direction_at, material};
 
 const COSINES: [f64; 7] = [0.01, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
 const DRAWS: u32 = 1 << 12;
@@ -16,7 +16,7 @@ const BANDS_NM: [f64; 3] = [656.27, 546.07, 486.13];
 /// Returns the brightness of each band under a uniform sky, with the deviation that noise may cause.
 fn furnace(material: &Material<Table>, indices: [f64; 2], from_inside: bool, cos: f64) -> [[f64; 2]; 3] {
     let draw = Draw::<4>::fixed(3);
-    let at = context(&draw, toward(cos, 0.4), indices[0]);
+    let at = context(&draw, direction_at(cos, 0.4), indices[0]);
     let context = ScatterContext { beyond: Index::Same(indices[1]), from_inside, ..at };
     let allowed = if material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION) { 4.0 } else { 0.0 };
     arrivals::furnace(material, &context, DRAWS).map(|[shown, error]| [shown, allowed * error])
@@ -56,16 +56,16 @@ fn clear_films_lose_nothing_and_win_nothing() {
     let mut worst = [1.0_f64; 2];
     for (text, sides) in rows {
         let material = material(&text);
-        let [mut least, mut most] = [f64::INFINITY, 0.0_f64];
+        let [mut lowest, mut highest] = [f64::INFINITY, 0.0_f64];
         for ((indices, inside), cos) in sides.iter().flat_map(|side| COSINES.map(|cos| (*side, cos))) {
             for [shown, chance] in furnace(&material, indices, inside, cos) {
-                [least, most] = [least.min(shown), most.max(shown)];
+                [lowest, highest] = [lowest.min(shown), highest.max(shown)];
                 let off = (shown - 1.0).abs() - chance;
                 assert!(off <= 0.005, "{text}: {shown} +- {chance} between {indices:?} at the cosine {cos}");
             }
         }
-        println!("{text:.110} {least:.5} to {most:.5}");
-        worst = [worst[0].min(least), worst[1].max(most)];
+        println!("{text:.110} {lowest:.5} to {highest:.5}");
+        worst = [worst[0].min(lowest), worst[1].max(highest)];
     }
     println!("all {:.5} to {:.5}", worst[0], worst[1]);
 }

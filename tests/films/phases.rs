@@ -4,7 +4,7 @@ use abbe::material::{Block, Incoming, Index, Layer, Mueller, PolarizedShare, Sca
 use abbe::math::Complex;
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{context, material, toward};
+use crate::support::arrivals::{context, direction_at, material};
 
 /// Returns the light reflected at 550 nm by one clear layer on n - i k, at an angle in degrees.
 fn reflected(index: f64, thickness_nm: f64, n2: [f64; 2], degrees: f64) -> PolarizedShare {
@@ -14,7 +14,7 @@ fn reflected(index: f64, thickness_nm: f64, n2: [f64; 2], degrees: f64) -> Polar
 }
 
 #[test]
-fn p_is_the_negative_of_s_along_the_normal_and_turns_as_abeles_has_it() {
+fn p_is_the_negative_of_s_along_the_normal_and_turns_as_abeles_predicts() {
     // Index and thickness of the layer, n and k beyond, angle and argument of r_p / r_s in degrees.
     const QUARTER: f64 = 99.637_681_159;
     let glass = [1.518_522_366, 0.0];
@@ -54,9 +54,9 @@ fn total_reflection_of_lanes_that_go_together_keeps_all_polarization_under_a_fil
                 incident: Index::Own(&incident),
                 beyond: Index::Own(&beyond),
                 direction_indices,
-                ..context(&draw, toward(cos, 0.4), 1.0)
+                ..context(&draw, direction_at(cos, 0.4), 1.0)
             };
-            let (wi, lanes) = (reflect(context.wo, context.normal), context.present.not_zero());
+            let (wi, lanes) = (reflect(context.wo, context.normal), context.present.nonzero());
             let incoming = Incoming { wi, crosses: false, single: true, lanes };
             for material in &materials {
                 let mut mueller = Mueller::NONE;

@@ -4,14 +4,14 @@ use abbe::spectrum::{Basis, Response};
 use abbe::trace::{Method, prepare, render};
 
 use super::reference::{Layer, shares};
-use crate::support::scenes::{EVERY_BRANCH, assert_near, body, method, quad, rendered, scene, view};
+use crate::support::scenes::{EVERY_BRANCH, assert_near, body, method, quad, render_text, scene, view};
 
 const ANGLES: [f64; 4] = [0.0, 30.0, 45.0, 60.0];
-const NAMED: [&str; 2] = ["reflected", "let through"];
+const SIDE_NAMES: [&str; 2] = ["reflected", "let through"];
 
 /// Returns the light of a lamp that a pixel receives from a material at the origin, reflected or from behind, at three
 /// wavelengths in nm and at an angle in degrees.
-fn seen(material: &str, shape: &str, degrees: f64, behind: bool, nm: [f64; 3]) -> [f64; 3] {
+fn received_light(material: &str, shape: &str, degrees: f64, behind: bool, nm: [f64; 3]) -> [f64; 3] {
     let (y, x) = degrees.to_radians().sin_cos();
     let camera = [4.0 * y, 0.0, 4.0 * x];
     let [u, lamp] = if behind { [[-x, 0.0, y], [-y, 0.0, -x]] } else { [[x, 0.0, y], [-y, 0.0, x]] };
@@ -33,8 +33,8 @@ const PLANE: &str = "plane = { point = [0, 0, 0], normal = [0, 0, 1] }";
 
 /// Returns the light that a material reflects relative to a perfect mirror.
 fn reflected(material: &str, degrees: f64, nm: [f64; 3]) -> [f64; 3] {
-    let white = seen("mirror = { reflectance = 1 }", PLANE, degrees, false, nm);
-    let found = seen(material, PLANE, degrees, false, nm);
+    let white = received_light("mirror = { reflectance = 1 }", PLANE, degrees, false, nm);
+    let found = received_light(material, PLANE, degrees, false, nm);
     std::array::from_fn(|i| found[i] / white[i])
 }
 
@@ -97,14 +97,14 @@ fn layers_are_listed_from_the_outside_inward_and_met_from_both_sides() {
         for degrees in ANGLES {
             let cos = degrees.to_radians().cos();
             let cos_inside = (1.0 - (1.0 - cos * cos) / (1.52 * 1.52)).sqrt();
-            let bare = seen(
+            let bare = received_light(
                 "mask = { material = \"clear\", opacity = 0 }\n[material.clear]\nmirror = {}",
                 slab,
                 degrees,
                 true,
                 nm,
             );
-            let found = seen(&material, slab, degrees, true, nm);
+            let found = received_light(&material, slab, degrees, true, nm);
             let through = nm.map(|nm| {
                 let [_, t] = shares(1.0, &stack, [1.52, 0.0], cos, nm);
                 let [r, back] = shares(1.52, &inside, [1.0, 0.0], cos_inside, nm);
@@ -132,12 +132,12 @@ fn a_film_is_reflected_by_and_seen_through() {
         for degrees in ANGLES {
             let expected =
                 nm.map(|nm| shares(1.0, &[([n, -k], thickness)], [1.0, 0.0], degrees.to_radians().cos(), nm));
-            for (way, name) in NAMED.iter().enumerate() {
+            for (way, name) in SIDE_NAMES.iter().enumerate() {
                 let found = match way {
                     0 => reflected(&material, degrees, nm),
                     _ => {
                         let clear = "thin = { index = 1 }";
-                        let [found, bare] = [&*material, clear].map(|of| seen(of, PLANE, degrees, true, nm));
+                        let [found, bare] = [&*material, clear].map(|of| received_light(of, PLANE, degrees, true, nm));
                         [0, 1, 2].map(|i| found[i] / bare[i])
                     }
                 };
@@ -182,7 +182,7 @@ fn a_checkerboard_of_thicknesses_is_what_its_squares_are() {
              shape.quad = {{ center = [0, 0, -3], u = [9, 0, 0], v = [0, 9, 0] }}\n\
              [material.black]\ndiffuse = {{ reflectance = 0 }}\n"
         );
-        rendered(&text).rgb_at(0, 0)
+        render_text(&text).rgb_at(0, 0)
     };
     for model in ["\"rgb\"", "{ bands = 16 }"] {
         let even = color("300", model);

@@ -8,7 +8,7 @@ use super::source::{Names, Source};
 use crate::support::texts::texts;
 
 /// All files, and the file of each module.
-pub struct House {
+pub struct SourceTree {
     pub files: Vec<Source>,
     modules: BTreeMap<Names, usize>,
 }
@@ -16,7 +16,7 @@ pub struct House {
 /// The files that each file uses, with one used name for each.
 pub type Graph = Vec<BTreeMap<usize, String>>;
 
-impl House {
+impl SourceTree {
     pub fn new(texts: &BTreeMap<String, String>) -> Self {
         let mut files: Vec<Source> = texts.iter().map(|(path, text)| Source::new(path, text)).collect();
         let declared: BTreeSet<Names> = files
@@ -30,7 +30,7 @@ impl House {
 
     /// Returns the file that defines the item at a path, following re-exports by `use`. Returns none if the path leads
     /// to a module.
-    pub fn home(&self, path: &[String]) -> Option<usize> {
+    pub fn defining_file(&self, path: &[String]) -> Option<usize> {
         let inside = (0..path.len())
             .rev()
             .find_map(|length| self.modules.get(&path[..length]).map(|file| (*file, &path[length..])));
@@ -41,17 +41,17 @@ impl House {
         if source.items.contains(name) && !is_module {
             return Some(file);
         }
-        let own = &path[..path.len() - after.len()];
-        let handed = source.uses.get(name).filter(|handed| handed[..] != *own)?;
-        self.home(&[handed, after].concat())
+        let own_path = &path[..path.len() - after.len()];
+        let handed = source.uses.get(name).filter(|handed| handed[..] != *own_path)?;
+        self.defining_file(&[handed, after].concat())
     }
 
     pub fn graph(&self) -> Graph {
         let edges = |(index, source): (usize, &Source)| {
             let mut edges = BTreeMap::new();
             for path in &source.paths {
-                if let Some(home) = self.home(path).filter(|home| *home != index) {
-                    edges.entry(home).or_insert_with(|| path.join("::"));
+                if let Some(defining_file) = self.defining_file(path).filter(|defining_file| *defining_file != index) {
+                    edges.entry(defining_file).or_insert_with(|| path.join("::"));
                 }
             }
             edges
@@ -70,24 +70,24 @@ fn reach(graph: &Graph, from: usize) -> BTreeSet<usize> {
 }
 
 /// Returns the largest sets of files in which each file uses all the others, directly or indirectly.
-pub fn circles(graph: &Graph) -> Vec<BTreeSet<usize>> {
+pub fn cycles(graph: &Graph) -> Vec<BTreeSet<usize>> {
     let reached: Vec<BTreeSet<usize>> = (0..graph.len()).map(|file| reach(graph, file)).collect();
-    let circle = |file: usize| -> BTreeSet<usize> {
+    let cycle = |file: usize| -> BTreeSet<usize> {
         reached[file].iter().copied().filter(|other| reached[*other].contains(&file)).collect()
     };
-    let found: BTreeSet<BTreeSet<usize>> = (0..graph.len()).map(circle).filter(|circle| !circle.is_empty()).collect();
+    let found: BTreeSet<BTreeSet<usize>> = (0..graph.len()).map(cycle).filter(|cycle| !cycle.is_empty()).collect();
     found.into_iter().collect()
 }
 
 /// Returns the texts of `src`, which are read once.
-pub fn here() -> &'static BTreeMap<String, String> {
+pub fn source_texts() -> &'static BTreeMap<String, String> {
     static TEXTS: LazyLock<BTreeMap<String, String>> =
         LazyLock::new(|| texts(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")));
     &TEXTS
 }
 
 /// Asserts that a law's findings are exactly its listed exceptions.
-pub fn exactly(name: &str, exceptions: &[&str], found: BTreeSet<String>, why: &str) {
+pub fn assert_exactly(name: &str, exceptions: &[&str], found: BTreeSet<String>, why: &str) {
     let lines: Vec<String> = found.iter().map(|one| format!("    {one:?},\n")).collect();
     let equal = found.iter().eq(exceptions);
     assert!(equal, "{why}\nThe exceptions would have to be\n\nconst {name}: &[&str] = &[\n{}];\n", lines.concat());

@@ -4,41 +4,41 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::exceptions::{ABROAD, LONG, SHARED, TUPLES, WIDE};
-use super::house::{House, exactly, here};
+use super::house::{SourceTree, assert_exactly, source_texts};
 use crate::support::texts::texts;
 
 /// Maximum number of lines of a file.
-const LONGEST_FILE: usize = 500;
+const MAX_FILE_LINES: usize = 500;
 /// Maximum number of lines of a function, and how many functions may have more.
-const LONGEST_FUNCTION: usize = 60;
-const LONG_FUNCTIONS: usize = 3;
+const MAX_FUNCTION_LINES: usize = 60;
+const MAX_LONG_FUNCTIONS: usize = 3;
 /// Maximum number of columns of a comment, the same as for code.
-const WIDEST: usize = 120;
+const MAX_COLUMNS: usize = 120;
 
-fn one(path: &str, text: &str) -> BTreeMap<String, String> {
-    several([(path, text)])
+fn one_file(path: &str, text: &str) -> BTreeMap<String, String> {
+    several_files([(path, text)])
 }
 
-fn several<const N: usize>(texts: [(&str, &str); N]) -> BTreeMap<String, String> {
+fn several_files<const N: usize>(texts: [(&str, &str); N]) -> BTreeMap<String, String> {
     texts.map(|(path, text)| (path.to_owned(), text.to_owned())).into()
 }
 
 fn long_files(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
     let lines = texts.iter().map(|(path, text)| (path, text.lines().count()));
-    lines.filter(|(_, lines)| *lines > LONGEST_FILE).map(|(path, lines)| format!("{path}: {lines} lines")).collect()
+    lines.filter(|(_, lines)| *lines > MAX_FILE_LINES).map(|(path, lines)| format!("{path}: {lines} lines")).collect()
 }
 
 #[test]
 fn every_source_file_is_short_enough_to_read() {
-    exactly("LONG_FILES", &[], long_files(here()), "a file has more than 500 lines");
-    assert_eq!(long_files(&one("a.rs", &"\n".repeat(501))).len(), 1);
-    assert!(long_files(&one("a.rs", &"\n".repeat(500))).is_empty());
+    assert_exactly("LONG_FILES", &[], long_files(source_texts()), "a file has more than 500 lines");
+    assert_eq!(long_files(&one_file("a.rs", &"\n".repeat(501))).len(), 1);
+    assert!(long_files(&one_file("a.rs", &"\n".repeat(500))).is_empty());
 }
 
 fn long_functions(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
     let mut long = BTreeSet::new();
-    for source in House::new(texts).files {
-        let functions = source.functions.iter().filter(|function| function.lines > LONGEST_FUNCTION);
+    for source in SourceTree::new(texts).files {
+        let functions = source.functions.iter().filter(|function| function.lines > MAX_FUNCTION_LINES);
         long.extend(functions.map(|function| format!("{}: {}", source.path, function.name)));
     }
     long
@@ -46,9 +46,9 @@ fn long_functions(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
 
 #[test]
 fn few_functions_are_longer_than_a_page() {
-    let long = long_functions(here());
-    if long.len() > LONG_FUNCTIONS {
-        exactly("LONG", LONG, long, "functions have more than 60 lines");
+    let long = long_functions(source_texts());
+    if long.len() > MAX_LONG_FUNCTIONS {
+        assert_exactly("LONG", LONG, long, "functions have more than 60 lines");
     } else {
         assert!(LONG.is_empty(), "the exceptions LONG are no longer needed");
     }
@@ -65,7 +65,7 @@ fn a_long_function_is_noticed() {
             format!("fn g() {{ fn f() {{{body}}} }}"),
             format!("mod inner {{ impl A for B {{ fn f() {{{body}}} }} }}"),
         ] {
-            let found = long_functions(&one("a.rs", &text)).contains("a.rs: f");
+            let found = long_functions(&one_file("a.rs", &text)).contains("a.rs: f");
             assert_eq!(found, lines == 61, "{lines}: {}", text.trim());
         }
     }
@@ -73,7 +73,7 @@ fn a_long_function_is_noticed() {
 
 fn tuples(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
-    for source in House::new(texts).files {
+    for source in SourceTree::new(texts).files {
         let functions = source.functions.iter().filter(|function| function.takes_tuple);
         found.extend(functions.map(|function| format!("{}: {}", source.path, function.name)));
     }
@@ -82,7 +82,7 @@ fn tuples(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
 
 #[test]
 fn no_function_takes_a_tuple_without_a_name() {
-    exactly("TUPLES", TUPLES, tuples(here()), "a function takes a tuple, whose parts have no names");
+    assert_exactly("TUPLES", TUPLES, tuples(source_texts()), "a function takes a tuple, whose parts have no names");
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn a_tuple_as_a_parameter_is_noticed() {
         "fn g() { fn f(x: (u8, u8)) {} }",
     ];
     for text in refused {
-        assert_eq!(tuples(&one("a.rs", text)).into_iter().collect::<Vec<_>>(), ["a.rs: f"], "{text}");
+        assert_eq!(tuples(&one_file("a.rs", text)).into_iter().collect::<Vec<_>>(), ["a.rs: f"], "{text}");
     }
     let allowed = [
         "fn f(x: [f64; 2], then: &dyn Fn()) -> (f64, f64) { g(|(x, y)| x) }",
@@ -105,17 +105,17 @@ fn a_tuple_as_a_parameter_is_noticed() {
         "fn f(points: &[(f64, f64)], each: impl Fn((f64, f64)) -> f64) {}",
     ];
     for text in allowed {
-        assert!(tuples(&one("a.rs", text)).is_empty(), "{text}");
+        assert!(tuples(&one_file("a.rs", text)).is_empty(), "{text}");
     }
 }
 
 /// Returns the inherent `impl` blocks outside the file of their type. Blocks in `shape/bvh` are allowed: its tree is
 /// one concept in many files.
-fn abroad(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
-    let house = House::new(texts);
+fn foreign_impls(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
+    let house = SourceTree::new(texts);
     let mut found = BTreeSet::new();
     for (index, source) in house.files.iter().enumerate().filter(|(_, source)| !source.path.starts_with("shape/bvh/")) {
-        let away = source.impls.iter().filter(|of| house.home(of) != Some(index));
+        let away = source.impls.iter().filter(|of| house.defining_file(of) != Some(index));
         found.extend(away.map(|of| format!("{}: {}", source.path, of.last().expect("a name"))));
     }
     found
@@ -124,7 +124,7 @@ fn abroad(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
 /// Returns the names that several files of a room use for types of their own.
 fn shared_names(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
     let mut homes: BTreeMap<String, u32> = BTreeMap::new();
-    for source in House::new(texts).files {
+    for source in SourceTree::new(texts).files {
         let room = source.path.split('/').next().unwrap_or_default();
         let is_type = |item: &&String| item.starts_with(char::is_uppercase) && item.contains(char::is_lowercase);
         for item in source.items.iter().filter(is_type) {
@@ -136,13 +136,13 @@ fn shared_names(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
 
 #[test]
 fn a_name_stands_for_one_type_in_a_room() {
-    exactly("SHARED", SHARED, shared_names(here()), "types of a room share a name");
+    assert_exactly("SHARED", SHARED, shared_names(source_texts()), "types of a room share a name");
 }
 
 #[test]
 fn a_name_of_two_types_is_noticed() {
     let files = |room: &str| {
-        several([
+        several_files([
             ("a/mod.rs", "mod one; mod two;"),
             ("b/mod.rs", "mod two;"),
             ("a/one.rs", "struct Mirror; const B: u8 = 1; fn c() {}"),
@@ -155,7 +155,12 @@ fn a_name_of_two_types_is_noticed() {
 
 #[test]
 fn a_type_keeps_its_own_methods_in_its_own_file() {
-    exactly("ABROAD", ABROAD, abroad(here()), "a type's inherent impl stands in another file than the type");
+    assert_exactly(
+        "ABROAD",
+        ABROAD,
+        foreign_impls(source_texts()),
+        "a type's inherent impl stands in another file than the type",
+    );
 }
 
 #[test]
@@ -163,14 +168,14 @@ fn an_impl_away_from_its_type_is_noticed() {
     let files = |text: &str| {
         let root = ("lib.rs", "mod room;");
         let room = ("room/mod.rs", "mod a; mod b; pub use a::A; pub struct Own;");
-        several([root, room, ("room/a.rs", "pub struct A<T>(T);"), ("room/b.rs", text)])
+        several_files([root, room, ("room/a.rs", "pub struct A<T>(T);"), ("room/b.rs", text)])
     };
     for text in [
         "use super::A; impl<T> A<T> {}",
         "impl super::a::A<u8> {}",
         "use super::A as Z; mod inner { impl super::Z<u8> {} }",
     ] {
-        assert_eq!(abroad(&files(text)).len(), 1, "{text}");
+        assert_eq!(foreign_impls(&files(text)).len(), 1, "{text}");
     }
     for text in [
         "use super::A; impl<T> Clone for A<T> {}",
@@ -178,7 +183,7 @@ fn an_impl_away_from_its_type_is_noticed() {
         "struct A; impl A {}",
         "mod inner { struct B; impl B {} }",
     ] {
-        assert!(abroad(&files(text)).is_empty(), "{text}");
+        assert!(foreign_impls(&files(text)).is_empty(), "{text}");
     }
 }
 
@@ -186,7 +191,7 @@ fn an_impl_away_from_its_type_is_noticed() {
 fn is_wide(line: &str) -> bool {
     let marks = line.match_indices("//").map(|(at, _)| &line[..at]);
     let mut comments = marks.filter(|before| before.trim().is_empty() || before.matches('"').count() % 2 == 0);
-    line.chars().count() > WIDEST && comments.next().is_some()
+    line.chars().count() > MAX_COLUMNS && comments.next().is_some()
 }
 
 fn wide_comments(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
@@ -201,7 +206,7 @@ fn comments_end_within_the_columns_of_code() {
         let inside = texts(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder));
         all.extend(inside.into_iter().map(|(path, text)| (format!("{folder}/{path}"), text)));
     }
-    exactly("WIDE", WIDE, wide_comments(&all), "a comment ends beyond column 120");
+    assert_exactly("WIDE", WIDE, wide_comments(&all), "a comment ends beyond column 120");
 }
 
 #[test]

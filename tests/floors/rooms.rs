@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::house::{House, here};
+use super::house::{SourceTree, source_texts};
 use super::source::Source;
 
 /// The command and the crate of the Python package, which stand above all floors.
@@ -15,7 +15,7 @@ type Floors = BTreeMap<String, u32>;
 /// Returns the floor of each room, from lines such as `//! floor 2   material   how ..  |  light   how ..`.
 fn floors() -> Floors {
     let mut floors = BTreeMap::new();
-    for line in here()["lib.rs"].lines().filter_map(|line| line.strip_prefix("//! floor ")) {
+    for line in source_texts()["lib.rs"].lines().filter_map(|line| line.strip_prefix("//! floor ")) {
         let (number, rooms) = line.split_once(' ').expect("a number and rooms");
         let number = number.parse().expect("the number of a floor");
         let names = rooms.split('|').filter_map(|room| room.split_whitespace().next());
@@ -32,11 +32,11 @@ fn names_used(source: &Source) -> BTreeSet<&str> {
 /// Returns why a file may not use a name, or none if it may.
 fn objection(floors: &Floors, source: &Source, name: &str) -> Option<String> {
     let room = if ERRORS.contains(&name) { "error" } else { name };
-    let own = source.module.first().map_or("lib", String::as_str);
-    if own == room || own == "lib" || COMMAND.contains(&own) {
+    let own_room = source.module.first().map_or("lib", String::as_str);
+    if own_room == room || own_room == "lib" || COMMAND.contains(&own_room) {
         return None;
     }
-    let (Some(from), Some(to)) = (floors.get(own), floors.get(room)) else {
+    let (Some(from), Some(to)) = (floors.get(own_room), floors.get(room)) else {
         return Some(format!("src/{} uses {name}: one of them is not drawn in src/lib.rs", source.path));
     };
     (to >= from).then(|| format!("src/{} on floor {from} uses {name} on floor {to}", source.path))
@@ -49,7 +49,7 @@ fn objections(floors: &Floors, source: &Source) -> Vec<String> {
 #[test]
 fn every_room_uses_only_rooms_on_lower_floors() {
     let floors = floors();
-    let house = House::new(here());
+    let house = SourceTree::new(source_texts());
     let uses: usize = house.files.iter().map(|source| names_used(source).len()).sum();
     assert!(uses > 60, "only {uses} uses were found");
     let objections: Vec<String> = house.files.iter().flat_map(|source| objections(&floors, source)).collect();
@@ -58,7 +58,7 @@ fn every_room_uses_only_rooms_on_lower_floors() {
 
 #[test]
 fn the_drawing_shows_every_room_and_no_other() {
-    let house = House::new(here());
+    let house = SourceTree::new(source_texts());
     let rooms: BTreeSet<&String> = house.files.iter().filter_map(|source| source.module.first()).collect();
     let rooms: Vec<&String> = rooms.into_iter().filter(|room| !COMMAND.contains(&room.as_str())).collect();
     assert_eq!(floors().keys().collect::<Vec<_>>(), rooms);

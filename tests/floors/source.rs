@@ -76,7 +76,7 @@ impl Source {
     }
 
     /// Returns a path from the crate root. Returns none for paths of other crates, of generics and of the prelude.
-    fn absolute(&self, written: &Written) -> Option<Names> {
+    fn absolute(&self, written: &WrittenPath) -> Option<Names> {
         let names = &written.names;
         let ups = names.iter().take_while(|name| *name == "super").count();
         let (start, rest) = match names[0].as_str() {
@@ -92,7 +92,7 @@ impl Source {
 }
 
 /// A path as written, with the module that it appears in.
-struct Written {
+struct WrittenPath {
     module: Names,
     names: Names,
 }
@@ -102,21 +102,23 @@ struct Written {
 struct Reader {
     module: Names,
     globs: Vec<Names>,
-    uses: Vec<(String, Written)>,
-    paths: Vec<Written>,
-    impls: Vec<Written>,
+    uses: Vec<(String, WrittenPath)>,
+    paths: Vec<WrittenPath>,
+    impls: Vec<WrittenPath>,
     functions: Vec<Function>,
 }
 
 impl Reader {
-    fn written(&self, names: Names) -> Written {
-        Written { module: self.module.clone(), names }
+    fn written(&self, names: Names) -> WrittenPath {
+        WrittenPath { module: self.module.clone(), names }
     }
 
-    fn leaves(&mut self, tree: &UseTree, before: &Names) {
+    fn collect_imports(&mut self, tree: &UseTree, before: &Names) {
         let (name, alias) = match tree {
-            UseTree::Group(group) => return group.items.iter().for_each(|tree| self.leaves(tree, before)),
-            UseTree::Path(path) => return self.leaves(&path.tree, &[&before[..], &[path.ident.to_string()]].concat()),
+            UseTree::Group(group) => return group.items.iter().for_each(|tree| self.collect_imports(tree, before)),
+            UseTree::Path(path) => {
+                return self.collect_imports(&path.tree, &[&before[..], &[path.ident.to_string()]].concat());
+            }
             UseTree::Glob(_) if ["crate", "super", "self", "abbe"].contains(&before[0].as_str()) => {
                 return self.globs.push(before.clone());
             }
@@ -181,7 +183,7 @@ impl Visit<'_> for Reader {
     }
 
     fn visit_item_use(&mut self, item: &syn::ItemUse) {
-        self.leaves(&item.tree, &Names::new());
+        self.collect_imports(&item.tree, &Names::new());
     }
 
     fn visit_path(&mut self, path: &syn::Path) {
@@ -246,8 +248,8 @@ fn attributes(item: &Item) -> &[Attribute] {
 
 /// Returns whether `#[cfg(test)]` is among the attributes.
 fn is_test(attributes: &[Attribute]) -> bool {
-    let of_tests = |one: &Attribute| one.parse_args::<syn::Path>().is_ok_and(|condition| condition.is_ident("test"));
-    attributes.iter().any(|one| one.path().is_ident("cfg") && of_tests(one))
+    let is_test_cfg = |one: &Attribute| one.parse_args::<syn::Path>().is_ok_and(|condition| condition.is_ident("test"));
+    attributes.iter().any(|one| one.path().is_ident("cfg") && is_test_cfg(one))
 }
 
 fn name_of(item: &Item) -> Option<String> {

@@ -5,13 +5,13 @@ use std::f64::consts::PI;
 use abbe::plan::plan;
 use abbe::spectrum::{ColorSpace, Curve, CurveKind, Dye, apply, visible};
 
-use super::{BRIGHTENER, Bells, RED, YELLOW, color, light, near, pixel};
+use super::{BRIGHTENER, BellDye, RED, YELLOW, assert_color, color, light, pixel};
 use crate::support::scenes::{body, film_of, scene, view};
 
 const PAPER: &str = "quad = { center = [0, 0, 0], u = [2, 0, 0], v = [0, 2, 0] }";
 
 /// Renders paper below a point light in a single pixel. The result is relative to the light's irradiance over pi.
-fn lit(material: &str, illuminant: &str, more: &str) -> [f64; 3] {
+fn lit_paper(material: &str, illuminant: &str, more: &str) -> [f64; 3] {
     pixel(&lit_scene(material, illuminant, more))
 }
 
@@ -42,7 +42,7 @@ fn one_photon_gives_one() {
 
 #[test]
 fn dyes_have_the_colors_of_their_matrices() {
-    let rows: [(Bells, &str, [f64; 3]); 9] = [
+    let rows: [(BellDye, &str, [f64; 3]); 9] = [
         (YELLOW, "D65", [0.803_904, 1.168_084, 0.346_924]),
         (YELLOW, "A", [0.991_020, 0.995_397, 0.129_157]),
         (YELLOW, "FL11", [0.879_344, 1.062_595, 0.186_003]),
@@ -55,22 +55,22 @@ fn dyes_have_the_colors_of_their_matrices() {
     ];
     for (dye, illuminant, xyz) in rows {
         let what = format!("{} by {illuminant}", dye.name);
-        let expected = apply(&ColorSpace::Rec709.of_xyz(), xyz);
+        let expected = apply(&ColorSpace::Rec709.matrix_from_xyz(), xyz);
         let light = light(illuminant);
         let brightness: f64 = visible::wavelengths().zip(&light).map(|(nm, light)| dye.excited(nm) * light).sum();
         let leaving: Vec<f64> = visible::wavelengths()
             .zip(light.iter().zip(dye.glow()))
             .map(|(nm, (light, glow))| dye.reflected(nm) * light + brightness * glow)
             .collect();
-        near(color(&leaving), expected, 2e-6, &format!("{what}, summed"));
+        assert_color(color(&leaving), expected, 2e-6, &format!("{what}, summed"));
         // The error is that of the paper's colors in 32 lanes.
-        near(lit(&dye.material(), illuminant, ""), expected, 2e-4, &format!("{what}, rendered"));
+        assert_color(lit_paper(&dye.material(), illuminant, ""), expected, 2e-4, &format!("{what}, rendered"));
     }
 }
 
 /// The stated error covers a dye's reflected and emitted light together.
 #[test]
-fn the_plan_keeps_its_word_of_dyed_paper() {
+fn the_plan_bounds_the_error_of_dyed_paper() {
     for dye in [YELLOW, RED, BRIGHTENER] {
         for illuminant in ["D65", "A", "FL11"] {
             let text = lit_scene(&dye.material(), illuminant, "");
@@ -79,7 +79,7 @@ fn the_plan_keeps_its_word_of_dyed_paper() {
             let found = film_of(&scene, plan.method.clone()).pixels[0].rgb.map(f64::from);
             // 32 lanes have errors of at most 2e-4.
             let share = plan.model_error + 2e-4;
-            near(found, pixel(&text), share, &format!("{} by {illuminant}, at most {share:.1e}", dye.name));
+            assert_color(found, pixel(&text), share, &format!("{} by {illuminant}, at most {share:.1e}", dye.name));
         }
     }
 }
@@ -102,24 +102,25 @@ fn light_that_excites_and_light_that_is_seen_are_filtered_by_their_own_wavelengt
             .zip(light.iter().zip(dye.glow()))
             .map(|(nm, (light, glow))| crosses(nm) * (crosses(nm) * dye.reflected(nm) * light + brightness * glow))
             .collect();
-        let found = lit(&dye.material(), illuminant, &sheet);
-        near(found, color(&leaving), 3e-4, &format!("{} by {illuminant}", dye.name));
+        let found = lit_paper(&dye.material(), illuminant, &sheet);
+        assert_color(found, color(&leaving), 3e-4, &format!("{} by {illuminant}", dye.name));
     }
 }
 
 /// Patches of a dye between patches of gray. Light that a patch absorbs is emitted from the same patch.
 #[test]
-fn a_share_of_the_surface_fluoresces_by_that_share() {
+fn a_partly_dyed_surface_fluoresces_in_proportion() {
     let mixed = format!(
         "mix = {{ materials = [\"dyed\", \"gray\"], amount = 0.25 }}\n[material.dyed]\n{}\n[material.gray]\n\
          diffuse = {{ reflectance = 0.4 }}",
         YELLOW.material()
     );
-    let [dyed, gray] = [YELLOW.material(), "diffuse = { reflectance = 0.4 }".to_owned()].map(|m| lit(&m, "D65", ""));
+    let [dyed, gray] =
+        [YELLOW.material(), "diffuse = { reflectance = 0.4 }".to_owned()].map(|m| lit_paper(&m, "D65", ""));
     let expected = [0, 1, 2].map(|c| 0.75 * dyed[c] + 0.25 * gray[c]);
-    near(lit(&mixed, "D65", ""), expected, 1e-6, "three quarters");
+    assert_color(lit_paper(&mixed, "D65", ""), expected, 1e-6, "three quarters");
     let masked = format!("mask = {{ material = \"dyed\", opacity = 0.75 }}\n[material.dyed]\n{}\n", YELLOW.material());
-    near(lit(&masked, "D65", ""), dyed.map(|x| 0.75 * x), 1e-6, "a mask");
+    assert_color(lit_paper(&masked, "D65", ""), dyed.map(|x| 0.75 * x), 1e-6, "a mask");
 }
 
 /// The dye's absorption and the surface's reflectance are shares of the same light, also at each texel of an image.
@@ -139,5 +140,5 @@ fn a_dye_under_an_image_is_refused_where_a_texel_leaves_no_room_for_it() {
     };
     // The lightest dots reflect 0.7 of ultraviolet light.
     assert_eq!(refused(0.25), None);
-    assert!(refused(0.5).is_some_and(|told| told.contains("reflectance and absorption add up to")));
+    assert!(refused(0.5).is_some_and(|message| message.contains("reflectance and absorption add up to")));
 }

@@ -2,7 +2,7 @@
 
 use super::YELLOW;
 use crate::polarization::stokes_vectors;
-use crate::support::scenes::{one_pixel, rendered};
+use crate::support::scenes::{one_pixel, render_text};
 
 /// Returns the Stokes vectors of red, green and blue that a pixel receives from a material under a point light.
 fn stokes(material: &str, camera: &str, more: &str) -> [[f64; 3]; 4] {
@@ -11,7 +11,7 @@ fn stokes(material: &str, camera: &str, more: &str) -> [[f64; 3]; 4] {
             "render.samples = 8\n[material.paper]\n{material}\n[[light]]\n\
              point = {{ position = [2, 0, 1], intensity = {{ illuminant = \"D65\", scale = 20 }} }}\n{more}"
         );
-    stokes_vectors(rendered(&text).film())
+    stokes_vectors(render_text(&text).film())
 }
 
 const STRAIGHT: &str =
@@ -22,7 +22,7 @@ const IN_GLASS: &str = "[[object]]\nmaterial = \"paper\"\nshape.quad = { center 
      shape.quad = { center = [0, 0, 0], u = [0.5, 0, 0.5], v = [0, 0.5, 0] }\n";
 
 #[test]
-fn a_filter_takes_half_of_what_a_dye_shines() {
+fn a_filter_takes_half_of_what_a_dye_emits() {
     let paper = YELLOW.material();
     let open = stokes(&paper, "", STRAIGHT)[0];
     let filtered = stokes(&paper, ", polarizer = { axis = 30, extinction = 0 }", STRAIGHT);
@@ -37,7 +37,7 @@ fn a_filter_takes_half_of_what_a_dye_shines() {
 }
 
 #[test]
-fn glass_polarizes_what_a_dye_shines_as_it_does_what_paper_scatters() {
+fn glass_polarizes_what_a_dye_emits_as_it_does_what_paper_scatters() {
     let [dyed, gray] =
         [YELLOW.material(), "diffuse = { reflectance = 0.5 }".to_owned()].map(|m| stokes(&m, "", IN_GLASS));
     assert!(gray[1][1].abs() > 0.3 * gray[0][1], "{gray:?}");

@@ -3,13 +3,13 @@
 use abbe::spectrum::{Basis, visible};
 use abbe::trace::Method;
 
-use super::{BRIGHTENER, Bells, RED, YELLOW, color, light};
+use super::{BRIGHTENER, BellDye, RED, YELLOW, color, light};
 use crate::support::larger::larger;
 use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, film_of, method, scene, view};
 
 /// Returns the radiance in a closed room whose walls have a dye. What the walls do not cover is lost to the outside or
 /// received from it: L = opacity (reflected + excited glow) L + (1 - opacity) E, a matrix of rank 1 plus a diagonal.
-fn room(dye: &Bells, opacity: f64, outside: &[f64]) -> Vec<f64> {
+fn room(dye: &BellDye, opacity: f64, outside: &[f64]) -> Vec<f64> {
     let glow = dye.glow();
     let left = |nm: f64| 1.0 - opacity * dye.reflected(nm);
     let nm: Vec<f64> = visible::wavelengths().collect();

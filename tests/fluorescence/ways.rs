@@ -4,18 +4,20 @@ use abbe::film::Film;
 use abbe::spectrum::{Basis, Emission};
 use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 
-use super::{BRIGHTENER, Bells, RED, YELLOW};
+use super::{BRIGHTENER, BellDye, RED, YELLOW};
 use crate::support::larger::larger;
-use crate::support::scenes::{Mean, SPLITTING, body, films_of, mean_color, method, moments, rendered, scene, view};
+use crate::support::scenes::{
+    Mean, SPLITTING, body, films_of, mean_and_variance, mean_color, method, render_text, scene, view,
+};
 
 /// Number of renders whose spread gives the noise.
 const SEEDS: u64 = 4;
 
 /// Asserts that every channel of two means agrees.
-fn agree(found: Mean, expected: Mean, what: &str) {
+fn assert_agree(found: Mean, expected: Mean, what: &str) {
     let strongest = expected.value.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
     for c in 0..3 {
-        let (off, error) = (found.value[c] - expected.value[c], found.beside(&expected).error[c]);
+        let (off, error) = (found.value[c] - expected.value[c], found.with_joint_error(&expected).error[c]);
         println!("{what} {c}: {:.5} for {:.5} +- {error:.5}", found.value[c], expected.value[c]);
         assert!(off.abs() < 4.0 * error + 1e-6 * strongest, "{what}: {found:?} for {expected:?}");
         assert!(error < 0.02 * strongest, "{what}: the noise hides all");
@@ -24,17 +26,17 @@ fn agree(found: Mean, expected: Mean, what: &str) {
 
 /// Returns the mean color of images under several seeds.
 fn mean(films: &[Film]) -> Mean {
-    let of = |c: usize| {
-        let (value, variance) = moments(films.iter().map(|film| mean_color(film)[c]));
+    let mean_of = |c: usize| {
+        let (value, variance) = mean_and_variance(films.iter().map(|film| mean_color(film)[c]));
         [value, (variance / films.len() as f64).sqrt()]
     };
-    let bands = [0, 1, 2].map(of);
+    let bands = [0, 1, 2].map(mean_of);
     Mean { value: bands.map(|band| band[0]), error: bands.map(|band| band[1]) }
 }
 
 /// Returns paper that is lit only by way of a mirror, or by a lamp at the place of the mirror image. The paper is seen
 /// directly or in another mirror.
-fn paper(dye: &Bells, lit_by_mirror: bool, seen_in_mirror: bool) -> String {
+fn paper(dye: &BellDye, lit_by_mirror: bool, seen_in_mirror: bool) -> String {
     let (position, look_at) =
         if seen_in_mirror { ([0.0, 0.0, 2.0], [0.0, -1.0, 1.0]) } else { ([0.0, -2.0, 2.0], [0.0; 3]) };
     let lamp = if lit_by_mirror { "sphere = { center = [0, 0, 1], radius = 0.1 }" } else { SHOWN };
@@ -81,8 +83,12 @@ fn photons_excite_dyes_where_they_are_shown_and_where_they_are_gathered() {
                 LightPass { photons: 200_000, lights: vec![0], openings: Vec::new(), to: vec![Smoothness::Whole], map };
             let straight = mean(&films(&paper(&dye, false, gathered), lanes, None));
             let what = format!("{}, gathered {gathered}", dye.name);
-            agree(mean(&films(&paper(&dye, true, gathered), lanes, Some(pass.clone()))), straight, &what);
-            agree(mean(&films(&paper(&dye, true, gathered), heroes, Some(pass))), straight, &format!("{what}, heroes"));
+            assert_agree(mean(&films(&paper(&dye, true, gathered), lanes, Some(pass.clone()))), straight, &what);
+            assert_agree(
+                mean(&films(&paper(&dye, true, gathered), heroes, Some(pass))),
+                straight,
+                &format!("{what}, heroes"),
+            );
         }
     }
 }
@@ -110,16 +116,16 @@ fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
         let lanes = Basis::bands_over(scene.film.color_space, 32 - lines.len(), Basis::FROM_ULTRAVIOLET_NM, lines);
         let heroes =
             Basis::bands_over(scene.film.color_space, 12, Basis::FROM_ULTRAVIOLET_NM, lines).with_heroes(4, &lights);
-        let of = |basis: Basis, samples: u32| {
+        let mean_of = |basis: Basis, samples: u32| {
             let method = Method { basis, samples, ..method(&scene, SPLITTING) };
             mean(&films_of(&scene, &method, 0..SEEDS))
         };
         // A sample of heroes has a tenth of the variance, or less.
         let times = if lines.is_empty() { 1 } else { 8 };
-        let (found, expected) = (of(heroes, times * 128), of(lanes, times * 256));
+        let (found, expected) = (mean_of(heroes, times * 128), mean_of(lanes, times * 256));
         for c in 0..3 {
             let strongest = expected.value.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
-            let (off, error) = ((found.value[c] - expected.value[c]).abs(), found.beside(&expected).error[c]);
+            let (off, error) = ((found.value[c] - expected.value[c]).abs(), found.with_joint_error(&expected).error[c]);
             println!("{} {c}: {:.5} for {:.5} +- {error:.5}", dye.name, found.value[c], expected.value[c]);
             // The tolerance is the color error of lanes that stay together, of 12 and of 32.
             assert!(off < 4.0 * error + 2e-3 * strongest, "{}: {found:?} for {expected:?}", dye.name);
@@ -130,14 +136,14 @@ fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
 
 /// Light from behind dispersive glass counts as dispersed, whether paper scatters it or a dye emits it.
 #[test]
-fn what_a_dye_shines_through_glass_is_dispersed() {
+fn light_of_a_dye_is_dispersed_by_glass() {
     let text = view([3.0, 0.0, 4.0], [0.0; 3], 3.0, 8)
         .replace("height = 8\n", "height = 8\nlayers = [\"dispersed\"]\n")
         + "[render]\nsamples = 64\ncaustics = \"off\"\n"
         + &body("paper", &YELLOW.material(), &["quad = { center = [0, 0, -3], u = [9, 0, 0], v = [0, 9, 0] }"])
         + &body("glass", "dielectric = { index = \"N-SF11\" }", &["cube = { center = [0, 0, 0], size = 2 }"])
         + "[[light]]\npoint = { position = [-2, 3, -1.5], intensity = 100 }\n";
-    let image = rendered(&text);
+    let image = render_text(&text);
     let sum = |values: &mut dyn Iterator<Item = f32>| values.map(f64::from).sum::<f64>();
     let layer = ["R", "G", "B"].map(|channel| image.layer(&format!("dispersed.{channel}")).expect("it was asked for"));
     let share = sum(&mut layer.into_iter().flatten()) / sum(&mut image.rgb().into_iter().flatten());

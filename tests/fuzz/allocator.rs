@@ -12,7 +12,7 @@ static LARGEST: AtomicUsize = AtomicUsize::new(0);
 
 struct Counting;
 
-fn added(bytes: usize) {
+fn record_allocation(bytes: usize) {
     PEAK.fetch_max(LIVE.fetch_add(bytes, Relaxed) + bytes, Relaxed);
     LARGEST.fetch_max(bytes, Relaxed);
 }
@@ -21,18 +21,18 @@ fn added(bytes: usize) {
 #[allow(unsafe_code)]
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        added(layout.size());
+        record_allocation(layout.size());
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        added(layout.size());
+        record_allocation(layout.size());
         unsafe { System.alloc_zeroed(layout) }
     }
 
     unsafe fn realloc(&self, at: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         LIVE.fetch_sub(layout.size(), Relaxed);
-        added(size);
+        record_allocation(size);
         unsafe { System.realloc(at, layout, size) }
     }
 

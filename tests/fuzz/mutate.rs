@@ -88,7 +88,7 @@ const NUMBERS: [&str; 26] = [
 ];
 
 /// Returns a damaged copy of a file. `words` are the words of its format.
-pub fn mutated(dice: &mut Dice, corpus: &[Vec<u8>], words: &[&str]) -> Vec<u8> {
+pub fn mutated_copy(dice: &mut Dice, corpus: &[Vec<u8>], words: &[&str]) -> Vec<u8> {
     let mut bytes = corpus[dice.below(corpus.len())].clone();
     let changes = dice.pick(&[1, 1, 1, 2, 3, 6]);
     for _ in 0..changes {

@@ -7,7 +7,7 @@ use abbe::Error;
 use abbe::scene::Source;
 
 use super::corpus;
-use super::mutate::{Dice, mutated, with_checksums, with_lengths};
+use super::mutate::{Dice, mutated_copy, with_checksums, with_lengths};
 
 /// A kind of file.
 pub struct Kind {
@@ -54,7 +54,7 @@ impl Kind {
     pub fn case(&self, number: u64) -> Vec<u8> {
         let seed = self.name.bytes().fold(number, |seed, byte| seed.wrapping_mul(1_000_003) ^ u64::from(byte));
         let mut dice = Dice::new(seed);
-        let mut bytes = mutated(&mut dice, &self.corpus, self.words);
+        let mut bytes = mutated_copy(&mut dice, &self.corpus, self.words);
         if dice.below(4) > 0 {
             (self.repair)(&mut bytes);
         }
@@ -68,16 +68,16 @@ impl Kind {
 
     /// Reads bytes in way `number` of those that this kind has, and checks that a refusal can be displayed.
     pub fn read(&self, bytes: &[u8], number: u64) -> Outcome {
-        let of = |count: usize| (number % count as u64) as usize;
+        let choose = |count: usize| (number % count as u64) as usize;
         let (answer, source) = match &self.via {
             Via::Scene(places) => {
-                let path = places[of(places.len())].clone();
+                let path = places[choose(places.len())].clone();
                 let source = Source { path, text: String::from_utf8_lossy(bytes).into_owned() };
                 (source.compile(), source)
             }
             Via::File { path, scenes } => {
                 fs::write(path, bytes).expect("the folder can be written");
-                let source = &scenes[of(scenes.len())];
+                let source = &scenes[choose(scenes.len())];
                 let answer = source.compile();
                 // Files that are removed at once are never written to the disk. A program that is stopped leaves one
                 // behind.

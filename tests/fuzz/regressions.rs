@@ -2,7 +2,7 @@
 
 use super::corpus;
 use super::readers::{Kind, kinds};
-use super::run::{alone, read};
+use super::run::{lock_memory, read};
 
 fn kind(name: &str) -> Kind {
     kinds().into_iter().find(|kind| kind.name == name).expect("a kind of file")
@@ -22,7 +22,7 @@ fn replaced(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
 /// Such elements take no bytes in a binary file, so the end of the file never stopped the reader.
 #[test]
 fn countless_elements_without_properties_are_passed_over() {
-    let _alone = alone();
+    let _alone = lock_memory();
     let ply = kind("ply");
     let has_nothing = |bytes: &&Vec<u8>| bytes.windows(9).any(|window| window == b"nothing 3");
     let files: Vec<&Vec<u8>> = ply.corpus().iter().filter(has_nothing).collect();
@@ -37,7 +37,7 @@ fn countless_elements_without_properties_are_passed_over() {
 /// outside of it.
 #[test]
 fn corners_far_outside_of_their_lists_are_refused() {
-    let _alone = alone();
+    let _alone = lock_memory();
     let obj = kind("obj");
     let file = |corner: &str| format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 {corner}\n");
     for (corner, what) in [
@@ -57,13 +57,13 @@ fn corners_far_outside_of_their_lists_are_refused() {
 /// Memory was allocated before it was known that the file has no texels.
 #[test]
 fn a_header_alone_gets_no_memory() {
-    let _alone = alone();
+    let _alone = lock_memory();
     let hdr = kind("hdr");
     let bytes = replaced(corpus::hdr().last().expect("a file"), "-Y 2 +X 6", "-Y 8192 +X 16384");
     for refusal in refusals(&hdr, &bytes) {
         let length = bytes.len();
-        let said = format!("its {length} bytes cannot hold 16384 x 8192 pixels");
-        assert_eq!(refusal, format!("case.hdr is not a valid Radiance image ({said})"));
+        let reason = format!("its {length} bytes cannot hold 16384 x 8192 pixels");
+        assert_eq!(refusal, format!("case.hdr is not a valid Radiance image ({reason})"));
     }
     let exr = kind("exr");
     for whole in corpus::exr() {
@@ -82,7 +82,7 @@ fn a_header_alone_gets_no_memory() {
 /// The reader did not check that there is a first texel.
 #[test]
 fn an_image_without_texels_is_refused() {
-    let _alone = alone();
+    let _alone = lock_memory();
     for (from, to) in [("-Y 2", "-Y 0"), ("+X 6", "+X 0")] {
         let bytes = replaced(corpus::hdr().last().expect("a file"), from, to);
         for refusal in refusals(&kind("hdr"), &bytes) {
@@ -94,7 +94,7 @@ fn an_image_without_texels_is_refused() {
 /// Packed 16-bit floats that end too early. The decoder panics if overflow is checked, and reads something otherwise.
 #[test]
 fn a_decoder_that_panics_stops_nothing() {
-    let _alone = alone();
+    let _alone = lock_memory();
     let (exr, bytes) = (kind("exr"), std::fs::read("tests/fuzz/seeds/short_b44.exr").expect("a seed"));
     for way in 0..exr.ways() {
         if let Err(refusal) = read(&exr, &bytes, way, "regression").outcome {

@@ -11,21 +11,21 @@ use super::readers::{Kind, Outcome, kinds};
 /// Number of cases over all kinds of files, unless ABBE_FUZZ_CASES sets another.
 const CASES: usize = 40_000;
 /// A case that takes longer counts as hanging. Most take a thousandth of a second.
-const LONGEST: Duration = Duration::from_secs(10);
+const MAX_TIME: Duration = Duration::from_secs(10);
 /// The most memory that a file of some kilobytes may take.
-pub const MOST_MEMORY: usize = 1 << 30;
+pub const MAX_MEMORY: usize = 1 << 30;
 
 /// The case that is being read, and its start.
-static NOW: Mutex<Option<(String, Instant)>> = Mutex::new(None);
+static CURRENT_CASE: Mutex<Option<(String, Instant)>> = Mutex::new(None);
 /// Memory is counted for only one test at a time.
-static ALONE: Mutex<()> = Mutex::new(());
+static MEMORY_LOCK: Mutex<()> = Mutex::new(());
 
-pub fn alone() -> MutexGuard<'static, ()> {
-    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+pub fn lock_memory() -> MutexGuard<'static, ()> {
+    MEMORY_LOCK.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn now(of: Option<(String, Instant)>) {
-    *NOW.lock().unwrap_or_else(PoisonError::into_inner) = of;
+    *CURRENT_CASE.lock().unwrap_or_else(PoisonError::into_inner) = of;
 }
 
 /// Ends the program with the name of a case that hangs, because nothing else would end it.
@@ -33,8 +33,8 @@ fn watch() {
     thread::spawn(|| {
         loop {
             thread::sleep(Duration::from_secs(1));
-            let case = NOW.lock().unwrap_or_else(PoisonError::into_inner).clone();
-            if let Some((case, since)) = case.filter(|(_, since)| since.elapsed() > LONGEST) {
+            let case = CURRENT_CASE.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            if let Some((case, since)) = case.filter(|(_, since)| since.elapsed() > MAX_TIME) {
                 eprintln!("{case} has taken {:?}", since.elapsed());
                 std::process::exit(1);
             }
@@ -57,7 +57,7 @@ pub fn read(kind: &Kind, bytes: &[u8], way: u64, case: &str) -> Cost {
     now(None);
     let outcome = outcome.unwrap_or_else(|_| panic!("{case} made the reader panic: {:?}", head(bytes)));
     let most = memory.largest.max(memory.peak);
-    assert!(most <= MOST_MEMORY, "{case} of {} bytes took {most} bytes: {:?}", bytes.len(), head(bytes));
+    assert!(most <= MAX_MEMORY, "{case} of {} bytes took {most} bytes: {:?}", bytes.len(), head(bytes));
     Cost { outcome, time: start.elapsed(), memory }
 }
 
@@ -67,7 +67,7 @@ fn head(bytes: &[u8]) -> String {
 
 #[test]
 fn the_files_that_are_damaged_are_whole() {
-    let _alone = alone();
+    let _alone = lock_memory();
     for kind in kinds() {
         for (number, bytes) in kind.corpus().iter().enumerate() {
             let readable = (0..kind.ways()).any(|way| read(&kind, bytes, way, "corpus").outcome.is_ok());
@@ -78,7 +78,7 @@ fn the_files_that_are_damaged_are_whole() {
 
 #[test]
 fn no_damage_to_a_file_stops_the_program_that_reads_it() {
-    let _alone = alone();
+    let _alone = lock_memory();
     let cases = std::env::var("ABBE_FUZZ_CASES").ok().map_or(CASES, |cases| cases.parse().expect("a whole number"));
     let mut kinds = kinds();
     let shares: usize = kinds.iter().map(|kind| kind.share).sum();
@@ -107,6 +107,6 @@ fn no_damage_to_a_file_stops_the_program_that_reads_it() {
             memory.peak as f64 / 1e6,
         );
         assert!(accepted > 0 && refused > 0, "{}: {accepted} read, {refused} refused", kind.name);
-        assert!(slowest.0 < LONGEST, "{} case {} took {:?}", kind.name, slowest.1, slowest.0);
+        assert!(slowest.0 < MAX_TIME, "{} case {} took {:?}", kind.name, slowest.1, slowest.0);
     }
 }

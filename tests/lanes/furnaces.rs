@@ -1,11 +1,11 @@
 //! Lossless bodies in a uniform sky: radiance is 1 outside and n^2 inside, in every band.
 
 use crate::support::larger::larger;
-use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
+use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, render_film, view};
 use abbe::trace::Transport;
 
 /// Returns a view from outside. All camera rays hit the body, from so many sides that no symmetry helps.
-fn outside(bodies: &str, samples: u32) -> String {
+fn outside_view(bodies: &str, samples: u32) -> String {
     let head = view([1.3, 0.9, 4.1], [0.05, 0.02, 0.1], 14.0, 64);
     head + &format!("[render]\nsamples = {samples}\n") + bodies + &environment(1.0)
 }
@@ -44,12 +44,12 @@ fn a_lossless_body_in_an_even_sky_is_invisible_in_every_band() {
     for index in INDICES {
         for (name, bodies) in bodies(index) {
             for (transport, samples) in transports {
-                let (film, report) = image(&outside(&bodies, samples), transport);
+                let (film, report) = render_film(&outside_view(&bodies, samples), transport);
                 assert_eq!((report.non_finite, report.unmatched), (0, 0));
                 assert!(film.pixels.iter().all(|pixel| pixel.alpha == 1.0), "{name}: a ray passes by");
                 let mean = Mean::of(&film);
                 mean.assert_near([1.0; 3], claims, &format!("{name} of index {index}, {transport:?}"));
-                let error = mean.worst_error([1.0; 3]);
+                let error = mean.worst_relative_error([1.0; 3]);
                 if matches!(transport, Transport::Random { split, .. } if split < 1.0) {
                     assert!(error <= 1e-3, "{name} of index {index}: sigma is {error}");
                     worst = larger(worst, error);
@@ -64,7 +64,8 @@ fn a_lossless_body_in_an_even_sky_is_invisible_in_every_band() {
 fn every_branch_together_makes_each_pixel_of_a_furnace_1() {
     for index in INDICES {
         for (name, bodies) in bodies(index).into_iter().take(3) {
-            let (film, report) = image(&outside(&bodies, 1), Transport::Deterministic { cutoff: 1e-9, most: u64::MAX });
+            let (film, report) =
+                render_film(&outside_view(&bodies, 1), Transport::Deterministic { cutoff: 1e-9, most: u64::MAX });
             // Chains of total reflection inside the cube end at the last surface, and what they carry is counted.
             for (at, pixel) in film.pixels.iter().enumerate() {
                 for x in pixel.rgb {
@@ -86,9 +87,9 @@ fn a_camera_inside_glass_sees_an_even_sky_n_squared_bright() {
         let text = view(position, [0.4, 0.9, -0.7], 120.0, 100) + &ball + &environment(1.0);
         let squares = indices.map(|n| n * n);
         for transport in [EVERY_BRANCH, SPLITTING] {
-            let mean = Mean::of(&image(&text, transport).0);
+            let mean = Mean::of(&render_film(&text, transport).0);
             mean.assert_near(squares, 6, &format!("from {position:?}"));
-            assert!(mean.worst_error(squares) <= 1e-3, "{mean:?}");
+            assert!(mean.worst_relative_error(squares) <= 1e-3, "{mean:?}");
         }
     }
 }

@@ -3,19 +3,19 @@
 use abbe::math::DVec3;
 
 use crate::support::random::Random;
-use crate::support::scenes::{EVERY_BRANCH, GROUND, SINGLE_PATH, SPLITTING, body, environment, image, view};
+use crate::support::scenes::{EVERY_BRANCH, GROUND, SINGLE_PATH, SPLITTING, body, environment, render_film, view};
 use abbe::trace::{MOST_MEDIA, Transport};
 
 /// Returns reflectance over transmittance of one interface at normal incidence.
-fn lost(n1: f64, n2: f64) -> f64 {
+fn r_over_t(n1: f64, n2: f64) -> f64 {
     let r = (n1 - n2) / (n1 + n2);
     r * r / (1.0 - r * r)
 }
 
 /// Returns the transmittance of a row of interfaces at normal incidence, with all reflections between them. The
 /// interfaces' R / T add up (Stokes 1862, the pile of plates).
-fn transmitted(indices: &[f64]) -> f64 {
-    1.0 / (1.0 + indices.windows(2).map(|pair| lost(pair[0], pair[1])).sum::<f64>())
+fn row_transmittance(indices: &[f64]) -> f64 {
+    1.0 / (1.0 + indices.windows(2).map(|pair| r_over_t(pair[0], pair[1])).sum::<f64>())
 }
 
 /// Returns the faces of a box, or of a hollow, whose faces point inward.
@@ -45,19 +45,19 @@ fn water(half: f64, priority: i32) -> String {
 }
 
 /// Returns what is seen straight through the middle of bodies of a plane of radiance 1, with all reflections.
-fn seen_through(bodies: &str) -> f64 {
+fn radiance_through(bodies: &str) -> f64 {
     let plane = "plane = { point = [0, 0, -5], normal = [0, 0, 1] }";
     let lamp = body("lamp", "emissive = { radiance = 1 }", &[plane]);
     // Off the diagonals of the faces, and so narrow that its rays count as one.
     let text = view([0.31, 0.17, 5.0], [0.31, 0.17, 0.0], 1e-6, 1) + bodies + &lamp;
-    let (film, report) = image(&text, Transport::Deterministic { cutoff: 1e-12, most: u64::MAX });
+    let (film, report) = render_film(&text, Transport::Deterministic { cutoff: 1e-12, most: u64::MAX });
     assert_eq!(report.unmatched, 0);
     f64::from(film.pixels[0].rgb[1])
 }
 
 #[test]
 fn m1_water_that_overlaps_its_vessel_lets_through_what_labelled_interfaces_would() {
-    let expected = transmitted(&[1.0, 1.5168, 1.333, 1.5168, 1.0]);
+    let expected = row_transmittance(&[1.0, 1.5168, 1.333, 1.5168, 1.0]);
     let solid = body("glass", SOLID, &["cube = { center = [0, 0, 0], size = 2 }"]);
     let ways = [
         ("overlapping a little", vessel() + &water(0.91, 1)),
@@ -65,14 +65,14 @@ fn m1_water_that_overlaps_its_vessel_lets_through_what_labelled_interfaces_would
         ("displacing glass", solid + &water(0.9, 2)),
     ];
     for (name, bodies) in ways {
-        let found = seen_through(&bodies);
+        let found = radiance_through(&bodies);
         println!("M1: {name} {:.1e}", found / expected - 1.0);
         // A weight is rounded to 2^-24 at each of the few dozen surfaces that matter.
         assert!((found / expected - 1.0).abs() <= 1e-6, "{name}: {found} for {expected}");
     }
     // The naive vessel, with a film of air between water and glass, differs by more than any rounding.
-    let naive = seen_through(&(vessel() + &water(0.89, 1)));
-    assert!((naive / transmitted(&[1.0, 1.5168, 1.0, 1.333, 1.0, 1.5168, 1.0]) - 1.0).abs() <= 1e-6, "{naive}");
+    let naive = radiance_through(&(vessel() + &water(0.89, 1)));
+    assert!((naive / row_transmittance(&[1.0, 1.5168, 1.0, 1.333, 1.0, 1.5168, 1.0]) - 1.0).abs() <= 1e-6, "{naive}");
     assert!(naive < 0.95 * expected);
 }
 
@@ -91,7 +91,7 @@ fn m3_overlap_and_displacement_bend_light_the_same_way() {
     let solid = body("glass", SOLID, &["cube = { center = [0, 0, 0], size = 2 }"]);
     let pictures = [vessel() + &water(0.91, 1), solid + &water(0.9, 2)].map(|bodies| {
         let text = view([2.9, 0.4, 4.7], [0.1, 0.05, 0.0], 12.0, 40) + &bodies + &stripes;
-        image(&text, Transport::Deterministic { cutoff: 1e-6, most: u64::MAX }).0
+        render_film(&text, Transport::Deterministic { cutoff: 1e-6, most: u64::MAX }).0
     });
     let [a, b] = pictures;
     for (at, (a, b)) in a.pixels.iter().zip(&b.pixels).enumerate() {
@@ -116,7 +116,7 @@ const BALLS: [([f64; 3], f64, f64, i32); 5] = [
 const ABSORPTIONS: [f64; 5] = [2.0, 5.0, 0.0, 9.0, 14.0];
 
 /// Returns the ball of highest priority that contains a point, or none.
-fn ball_around(place: DVec3) -> Option<usize> {
+fn ball_containing(place: DVec3) -> Option<usize> {
     let within = |&i: &usize| (place - DVec3::from(BALLS[i].0)).length() < BALLS[i].1;
     (0..BALLS.len()).filter(within).max_by_key(|&i| BALLS[i].3)
 }
@@ -157,9 +157,9 @@ fn m4_a_camera_finds_the_media_around_it() {
             (position + direction).to_array(),
             body("lamp", "emissive = { radiance = 1 }", &[&lamp])
         );
-        let (film, report) = image(&text, EVERY_BRANCH);
+        let (film, report) = render_film(&text, EVERY_BRANCH);
         assert_eq!(report.unmatched, 0, "from {position}");
-        let around = ball_around(start);
+        let around = ball_containing(start);
         found[around.map_or(BALLS.len(), |ball| ball)] += 1;
         let expected = libm::exp(-0.1 * around.map_or(0.0, |ball| ABSORPTIONS[ball]));
         let seen = f64::from(film.pixels[0].rgb[0]);
@@ -179,7 +179,7 @@ fn overlapping_bodies_of_one_material_are_one_body() {
     // d).
     let (r, a) = (0.04, libm::exp(-0.5 * 1.5));
     let expected = (1.0 - r) * (1.0 - r) * a / (1.0 - r * r * a * a);
-    let found = seen_through(&bodies);
+    let found = radiance_through(&bodies);
     assert!((found / expected - 1.0).abs() <= 1e-6, "{found} for {expected}");
 }
 
@@ -193,26 +193,26 @@ fn m4_a_camera_knows_whether_it_is_in_a_half_space_whichever_way_it_looks() {
     let cases =
         [(&half, -2.0, -3.0, inside), (&half, -2.0, -1.0, inside), (&half, 1.0, 2.0, 1.0), (&slab, 1.0, 2.0, 1.0)];
     let more = [(&slab, -5.0, -6.0, 1.0), (&slab, -2.0, -3.0, inside), (&slab, -2.0, -1.0, inside)];
-    let look = |planes: &[String], ways: [[f64; 3]; 2], sides: &str, expected: f64| {
+    let assert_arrival = |planes: &[String], ways: [[f64; 3]; 2], sides: &str, expected: f64| {
         let planes: Vec<&str> = planes.iter().map(String::as_str).collect();
         let water = body("water", "dielectric = { index = 1.333, absorption = 1 }", &planes);
         let quad = format!("quad = {{ center = {:?}, {sides} }}", ways[1]);
         let text = view(ways[0], ways[1], 1e-6, 1) + &water + &body("lamp", "emissive = { radiance = 1 }", &[&quad]);
-        let (film, report) = image(&text, EVERY_BRANCH);
+        let (film, report) = render_film(&text, EVERY_BRANCH);
         let seen = f64::from(film.pixels[0].rgb[1]);
         assert!((seen - expected).abs() < 1e-6, "{ways:?}: {seen} for {expected}");
         assert_eq!(report.unmatched, 0, "{ways:?}");
     };
     for (planes, camera, lamp, expected) in cases.into_iter().chain(more) {
-        look(planes, [[camera, 0.0, 0.0], [lamp, 0.0, 0.0]], "u = [0, 1, 0], v = [0, 0, 1]", expected);
+        assert_arrival(planes, [[camera, 0.0, 0.0], [lamp, 0.0, 0.0]], "u = [0, 1, 0], v = [0, 0, 1]", expected);
     }
     // The camera is in two half spaces at once, and the path to the lamp leaves one of them.
     let wedge = vec![plane(0.0, 1.0), GROUND.to_owned()];
     let ways = [[-1.0, -1.0, 0.0], [1.0, -3.0, 0.0]];
-    look(&wedge, ways, "u = [1, 1, 0], v = [0, 0, 1]", (-8_f64.sqrt()).exp());
+    assert_arrival(&wedge, ways, "u = [1, 1, 0], v = [0, 0, 1]", (-8_f64.sqrt()).exp());
     // The view is exactly along the surface.
     for (planes, camera, expected) in [(&half, -2.0, inside), (&half, 1.0, 1.0), (&slab, -2.0, inside)] {
-        look(planes, [[camera, 0.0, 0.0], [camera, 0.0, 1.0]], "u = [1, 0, 0], v = [0, 1, 0]", expected);
+        assert_arrival(planes, [[camera, 0.0, 0.0], [camera, 0.0, 1.0]], "u = [1, 0, 0], v = [0, 1, 0]", expected);
     }
 }
 
@@ -226,7 +226,7 @@ fn m4_a_camera_that_looks_exactly_at_a_corner_of_a_glass_mesh_is_outside_of_it()
     for corner in [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]] {
         for position in [[2.5, 3.5, 2.0], [-3.0, 1.0, 2.5], [1.0, -4.0, -2.0], [4.0, 1.0, 0.0]] {
             let text = view(position, corner.map(f64::from), 70.0, 8) + &glass + &environment(1.0);
-            let (film, report) = image(&text, EVERY_BRANCH);
+            let (film, report) = render_film(&text, EVERY_BRANCH);
             assert_eq!(report.unmatched, 0, "{corner:?} from {position:?}");
             assert_eq!(film.pixels[0].rgb, [1.0; 3], "{corner:?} from {position:?}");
         }
@@ -246,11 +246,11 @@ fn shells(count: u32) -> String {
 }
 
 #[test]
-fn as_many_bodies_as_there_is_room_for_lie_in_one_another_and_more_are_told_of() {
+fn bodies_may_be_nested_up_to_the_limit_and_more_are_reported() {
     for (position, path) in [([0.0, 0.0, 5.0], 2.0_f64), ([0.0, 0.0, 0.05], 1.05)] {
         let seen = |count: u32| {
             let text = view(position, [0.0, 0.0, -9.0], 1e-6, 1) + &shells(count) + &environment(1.0);
-            let (film, report) = image(&text, EVERY_BRANCH);
+            let (film, report) = render_film(&text, EVERY_BRANCH);
             (f64::from(film.pixels[0].rgb[1]), report)
         };
         let (shown, report) = seen(MOST_MEDIA as u32);
@@ -285,17 +285,17 @@ fn hidden_bodies_are_no_surfaces_of_what_is_seen_through_them() {
                     + &lamp
                     + if seen { "" } else { "visible_to_camera = false\n" };
                 for transport in [EVERY_BRANCH, SPLITTING, SINGLE_PATH] {
-                    let (film, _) = image(&text, transport);
+                    let (film, _) = render_film(&text, transport);
                     for pixel in &film.pixels {
-                        let told = format!("{hidden} {max_bounces} {seen}: {pixel:?}");
+                        let label = format!("{hidden} {max_bounces} {seen}: {pixel:?}");
                         if seen {
                             // All light arrives, apart from the factor of radiance.
-                            assert!((pixel.rgb[0] - 1.0).abs() < 1e-5, "{told}");
-                            assert!((pixel.depth - 10.0).abs() < 1e-3 && pixel.alpha == 1.0, "{told}");
+                            assert!((pixel.rgb[0] - 1.0).abs() < 1e-5, "{label}");
+                            assert!((pixel.depth - 10.0).abs() < 1e-3 && pixel.alpha == 1.0, "{label}");
                         } else if max_bounces == 0 {
-                            assert!(pixel.rgb[0] == 0.0, "{told}");
+                            assert!(pixel.rgb[0] == 0.0, "{label}");
                         } else {
-                            assert!(pixel.rgb[0] < 0.5, "{told}");
+                            assert!(pixel.rgb[0] < 0.5, "{label}");
                         }
                     }
                 }

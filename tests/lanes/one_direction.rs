@@ -12,17 +12,17 @@ use abbe::spectrum::{
 };
 use abbe::trace::{Method, prepare, render};
 
-use crate::support::arrivals::{context, material, toward};
+use crate::support::arrivals::{context, direction_at, material};
 use crate::support::colors::{difference, lab};
 use crate::support::fresnel::reflectances;
 use crate::support::larger::larger;
 use crate::support::scenes::{
-    EVERY_BRANCH, Mean, SINGLE_PATH, body, environment, film_of, method, scene, standard_errors, view,
+    EVERY_BRANCH, Mean, SINGLE_PATH, body, environment, film_of, method, scene, sigma_limit, view,
 };
 
 const SPACE: ColorSpace = ColorSpace::Rec709;
 
-fn named(kind: fn(&str) -> Option<CurveKind>, name: &str) -> Curve {
+fn named_curve(kind: fn(&str) -> Option<CurveKind>, name: &str) -> Curve {
     kind(name).expect("it is in the catalog").into()
 }
 
@@ -34,7 +34,7 @@ fn plate(n: f64, cos: f64) -> [f64; 2] {
 }
 
 fn bases() -> Vec<Basis> {
-    let light = Emission::new(&named(CurveKind::illuminant, "D65"), SPACE);
+    let light = Emission::new(&named_curve(CurveKind::illuminant, "D65"), SPACE);
     let mut bases = vec![Basis::rgb(SPACE), Basis::prefiltered(SPACE, &light)];
     bases.extend([8, 12, 16, 32].map(|bands| Basis::bands(SPACE, bands, &[])));
     bases.push(Basis::bands(SPACE, 12, &[]).with_heroes(4, &[light]));
@@ -42,8 +42,8 @@ fn bases() -> Vec<Basis> {
 }
 
 fn clear(basis: &Basis, index: Table) -> Material<Table> {
-    let even = |x: f64| basis.tabulate(Quantity::Transmittance, &x.into());
-    let [reflectance, transmittance, emission, absorption] = [1.0, 1.0, 0.0, 0.0].map(even);
+    let constant = |x: f64| basis.tabulate(Quantity::Transmittance, &x.into());
+    let [reflectance, transmittance, emission, absorption] = [1.0, 1.0, 0.0, 0.0].map(constant);
     let (priority, roughness) = (0, Roughness::default());
     Material::Dielectric(Dielectric {
         index,
@@ -61,7 +61,7 @@ type Draws = Draw<MAX_LANES>;
 
 /// Returns the reflected and the transmitted branch of a smooth surface, with the shares of each lane and the
 /// direction.
-fn met(material: &Material<Table>, context: &ScatterContext<MAX_LANES>) -> [Option<Branch<MAX_LANES>>; 2] {
+fn smooth_branches(material: &Material<Table>, context: &ScatterContext<MAX_LANES>) -> [Option<Branch<MAX_LANES>>; 2] {
     let mut branches = Vec::new();
     material.scatter(context, [0.5; 2], &mut branches);
     assert!(branches.len() <= 2, "lanes part");
@@ -74,7 +74,7 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
     for basis in bases() {
         let draw: Draws = basis.draw(0.37);
         for glass in data::glasses() {
-            let table = basis.tabulate(Quantity::Index, &named(CurveKind::glass, glass.key));
+            let table = basis.tabulate(Quantity::Index, &named_curve(CurveKind::glass, glass.key));
             let own = draw.read_exact(&table);
             let Some(direction) = table.direction() else { panic!("{} does not disperse", glass.key) };
             assert!((direction - glass.n_d()).abs() < 1e-9, "{}: {direction}", glass.key);
@@ -88,9 +88,13 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
                     direction_indices: [Some(1.0), Some(direction)],
                     ..context(&draw, wo, 1.0)
                 };
-                let [Some(r), Some(t)] = met(&material, &enters) else { panic!("{} at {degrees}", glass.key) };
+                let [Some(r), Some(t)] = smooth_branches(&material, &enters) else {
+                    panic!("{} at {degrees}", glass.key)
+                };
                 let leaves = ScatterContext { wo: -t.wi, ..enters.turned_around() };
-                let [Some(inner), Some(out)] = met(&material, &leaves) else { panic!("{} at {degrees}", glass.key) };
+                let [Some(inner), Some(out)] = smooth_branches(&material, &leaves) else {
+                    panic!("{} at {degrees}", glass.key)
+                };
                 assert!((out.wi + wo).length() < 1e-12, "{} at {degrees} degrees goes on to {}", glass.key, out.wi);
                 assert!((t.eta_scale * out.eta_scale - 1.0).abs() < 1e-14);
                 let Some(forward) = leaves.forward() else { panic!("{} at {degrees}", glass.key) };
@@ -114,7 +118,7 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
 }
 
 /// Returns a view with rays at 0 to 85 degrees onto a plate, and a plane of radiance 1 in front of it or behind it.
-fn before_or_behind(glass: &str, reflected: bool) -> String {
+fn plate_view(glass: &str, reflected: bool) -> String {
     let (sin, cos) = libm::sincos(42.5_f64.to_radians());
     let (y, facing) = if reflected { (30, -1) } else { (-5, 1) };
     let plane = format!("plane = {{ point = [0, {y}, 0], normal = [0, {facing}, 0] }}");
@@ -134,22 +138,27 @@ fn d16_plates_of_glass_are_rendered_as_bright_in_every_lane_as_they_are() {
     let mut worst = 0.0_f64;
     for (number, key) in keys.into_iter().enumerate() {
         let basis = &bases()[number % 6];
-        let index = basis.tabulate(Quantity::Index, &named(CurveKind::glass, key));
+        let index = basis.tabulate(Quantity::Index, &named_curve(CurveKind::glass, key));
         for reflected in [true, false] {
-            let scene = scene(&before_or_behind(key, reflected));
+            let scene = scene(&plate_view(key, reflected));
             let world = || {
                 let method = Method { basis: basis.clone(), ..method(&scene, EVERY_BRANCH) };
                 prepare(&scene, method)
             };
             for lane in (0..basis.lanes()).step_by(if basis.lanes() > 12 { 5 } else { 1 }) {
                 let own = index.bins()[lane];
-                let (film, _) = render(&world().with_responses(|response| comparison::only(response, lane)), &|_| ());
+                let (film, _) =
+                    render(&world().with_responses(|response| comparison::response_of_lane(response, lane)), &|_| ());
                 // The color of the lane by itself, and the channel that has most of it.
                 let light = Curve::from(1.0);
                 let alone = {
                     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
                     let table = basis.tabulate(Quantity::Emission, &light);
-                    comparison::only(&basis.response(&light), lane).sensor(&draw, draw.read(&table), false)
+                    comparison::response_of_lane(&basis.response(&light), lane).film_rgb(
+                        &draw,
+                        draw.read(&table),
+                        false,
+                    )
                 };
                 let channel = (0..3).fold(0, |most, c| if alone[c].abs() > alone[most].abs() { c } else { most });
                 for (at, pixel) in film.pixels.iter().enumerate() {
@@ -220,7 +229,7 @@ fn d16_lanes_in_a_dispersive_liquid_meet_denser_glass_as_if_each_were_alone() {
                 incident: Index::Own(&incident),
                 beyond: Index::Own(&beyond),
                 direction_indices: direction.map(Some),
-                ..context(&draw, toward(cos, 0.4), 1.0)
+                ..context(&draw, direction_at(cos, 0.4), 1.0)
             };
             let mut branches = Vec::new();
             material.scatter(&context, [0.5; 2], &mut branches);
@@ -314,7 +323,7 @@ fn d16_glass_whose_lanes_stay_together_is_invisible_in_an_even_sky() {
             }
             let Mean { value, error } = Mean::of(&film);
             for (band, (mean, error)) in value.into_iter().zip(error).enumerate() {
-                let error = standard_errors(15) * error;
+                let error = sigma_limit(15) * error;
                 assert!((mean - 1.0).abs() < tolerance + error, "{roughness}: {mean} +- {error} in band {band}");
             }
         }
@@ -347,13 +356,13 @@ fn mirror_ball(model: &str) -> (abbe::plan::Plan, Film, Vec<f64>) {
 
 #[test]
 fn d16_a_ball_of_dense_flint_mirrors_daylight_in_its_color() {
-    let (light, glass) = (Emission::new(&named(CurveKind::illuminant, "D65"), SPACE), data::glass("N-SF66"));
+    let (light, glass) = (Emission::new(&named_curve(CurveKind::illuminant, "D65"), SPACE), data::glass("N-SF66"));
     let (white, glass) = (light.xyz(), glass.unwrap_or_else(|| panic!("no N-SF66")));
     for (model, bound) in [("\"rgb\"", 0.1), ("{ bands = 8 }", 0.3), ("{ bands = 16 }", 0.05), ("{ bands = 32 }", 0.05)]
     {
         let (plan, film, cosines) = mirror_ball(model);
-        let said = plan.because.join("\n");
-        assert!(said.contains("lanes stay together"), "{said}");
+        let because = plan.because.join("\n");
+        assert!(because.contains("lanes stay together"), "{because}");
         let mut worst = 0.0_f64;
         for (pixel, cos) in film.pixels.iter().zip(cosines).filter(|(_, cos)| *cos > 0.05) {
             let (mut sum, mut total) = ([0.0; 3], [0.0; 3]);

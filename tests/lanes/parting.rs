@@ -4,7 +4,7 @@ use abbe::film::Film;
 use abbe::trace::Transport;
 
 use crate::support::scenes::{
-    EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, films_of, image, method, scene, standard_errors, view,
+    EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, films_of, method, render_film, scene, sigma_limit, view,
 };
 
 /// A ball and a prism of glass among other objects, shared by the scenes of this folder.
@@ -59,7 +59,7 @@ fn index_per_band() -> String {
 
 /// Renders a scene whose lanes part, and one with a flat index for each band.
 fn parted_and_flat(floor: &str, filter: &str, transport: Transport) -> (Film, [Film; 3]) {
-    let film = |index: &str| image(&text(index, floor, filter, 44), transport).0;
+    let film = |index: &str| render_film(&text(index, floor, filter, 44), transport).0;
     (film(&index_per_band()), INDICES.map(|index| film(&index.to_string())))
 }
 
@@ -99,15 +99,15 @@ fn parted_lanes_equal_one_render_for_each_index_in_the_mean() {
             // With other seeds, so that the two sides are independent.
             let flat = films(&index.to_string(), SEEDS);
             for place in 0..BLOCKS * BLOCKS {
-                let of = |films: &[Film]| {
+                let block_mean = |films: &[Film]| {
                     let blocks: Vec<Film> =
                         films.iter().map(|film| block(film, place % BLOCKS, place / BLOCKS)).collect();
                     let mean = Mean::over_seeds(&blocks);
                     (mean.value[band], mean.error[band])
                 };
-                let ((a, error_a), (b, error_b)) = (of(&parted), of(&flat));
+                let ((a, error_a), (b, error_b)) = (block_mean(&parted), block_mean(&flat));
                 let (off, error) = ((a - b).abs(), error_a.hypot(error_b));
-                let limit = standard_errors((BLOCKS * BLOCKS * 6) as usize);
+                let limit = sigma_limit((BLOCKS * BLOCKS * 6) as usize);
                 assert!(off <= limit * error, "block {place}, band {band}: {a} parted, {b} alone, +- {error}");
             }
         }

@@ -7,7 +7,7 @@ use abbe::spectrum::{Basis, Curve, Emission, Response, comparison};
 use abbe::trace::{Method, Transport, prepare, render};
 
 use super::parting::{BALL_AND_PRISM, BLOCK, block};
-use crate::support::scenes::{EVERY_BRANCH, Mean, SPLITTING, method, scene, standard_errors, view};
+use crate::support::scenes::{EVERY_BRANCH, Mean, SPLITTING, method, scene, sigma_limit, view};
 
 /// Returns a ball and a prism of glass among colored objects, on a floor.
 fn text(glass: &str, floor: &str, filter: &str, side: u32) -> String {
@@ -29,11 +29,11 @@ sky.emissive = {{ radiance = {{ illuminant = "FL11", scale = 0.3 }}, sides = "fr
 
 const FLINT: &str = "{ index = \"N-SF11\", absorption = \"N-SF11\" }";
 
-fn film(scene: &Scene<Curve>, basis: &Basis, transport: Transport, seed: u64, hear: Option<usize>) -> Film {
+fn film(scene: &Scene<Curve>, basis: &Basis, transport: Transport, seed: u64, only_lane: Option<usize>) -> Film {
     let method = Method { basis: basis.clone(), seed, ..method(scene, transport) };
     let world = prepare(scene, method);
-    let world = match hear {
-        Some(lane) => world.with_responses(|response| comparison::only(response, lane)),
+    let world = match only_lane {
+        Some(lane) => world.with_responses(|response| comparison::response_of_lane(response, lane)),
         None => world,
     };
     render(&world, &|_| ()).0
@@ -45,7 +45,7 @@ fn each_of_many_lanes_has_the_bits_it_has_alone() {
     let together = Basis::bands(scene.film.color_space, 12, &[]);
     for lane in 0..12 {
         let among = film(&scene, &together, EVERY_BRANCH, 0, Some(lane));
-        let alone = film(&scene, &comparison::alone(&together, lane), EVERY_BRANCH, 0, None);
+        let alone = film(&scene, &comparison::basis_of_lane(&together, lane), EVERY_BRANCH, 0, None);
         let bits = |film: &Film| film.pixels.iter().map(|pixel| pixel.rgb.map(f32::to_bits)).collect::<Vec<_>>();
         assert_eq!(bits(&among), bits(&alone), "lane {lane}");
         assert!(among.pixels.iter().filter(|pixel| pixel.rgb[1] != 0.0).count() > 45, "lane {lane} is dark");
@@ -56,14 +56,14 @@ const BLOCKS: u32 = 4;
 
 /// Asserts that two ways to render a scene agree in the mean of every block and channel.
 fn assert_alike(first: &[Film], second: &[Film], what: &str) {
-    let limit = standard_errors((BLOCKS * BLOCKS * 3) as usize);
+    let limit = sigma_limit((BLOCKS * BLOCKS * 3) as usize);
     for place in 0..BLOCKS * BLOCKS {
         let [a, b] = [first, second].map(|films| {
             let blocks: Vec<Film> = films.iter().map(|film| block(film, place % BLOCKS, place / BLOCKS)).collect();
             Mean::over_seeds(&blocks)
         });
         for band in 0..3 {
-            let (x, y, error) = (a.value[band], b.value[band], a.beside(&b).error[band]);
+            let (x, y, error) = (a.value[band], b.value[band], a.with_joint_error(&b).error[band]);
             assert!((x - y).abs() <= limit * error, "{what}, block {place}, band {band}: {x} and {y} +- {error}");
         }
     }
@@ -74,12 +74,12 @@ fn a_lane_among_others_has_the_mean_it_has_alone() {
     let scene = scene(&text(FLINT, "diffuse.reflectance = \"orange\"", "box", BLOCK * BLOCKS));
     let together = Basis::bands(scene.film.color_space, 8, &[]);
     for lane in [1, 4, 6] {
-        let of = |basis: &Basis, first: u64, hear| {
-            (first..first + 24).map(|seed| film(&scene, basis, SPLITTING, seed, hear)).collect::<Vec<_>>()
+        let render_seeds = |basis: &Basis, first: u64, only_lane| {
+            (first..first + 24).map(|seed| film(&scene, basis, SPLITTING, seed, only_lane)).collect::<Vec<_>>()
         };
         assert_alike(
-            &of(&together, 0, Some(lane)),
-            &of(&comparison::alone(&together, lane), 100, None),
+            &render_seeds(&together, 0, Some(lane)),
+            &render_seeds(&comparison::basis_of_lane(&together, lane), 100, None),
             &format!("lane {lane}"),
         );
     }
@@ -97,10 +97,10 @@ fn heroes_and_fixed_lanes_together_find_what_single_wavelengths_find() {
         let space = scene.film.color_space;
         let lights: Vec<Emission> = scene.lights.iter().map(|light| Emission::new(light.emission(), space)).collect();
         let heroes = Basis::bands(space, 28, &[]).with_heroes(4, &lights);
-        let of = |basis: &Basis, first: u64| {
+        let render_seeds = |basis: &Basis, first: u64| {
             (first..first + 24).map(|seed| film(&scene, basis, SPLITTING, seed, None)).collect::<Vec<_>>()
         };
-        assert_alike(&of(&heroes, 0), &of(&comparison::collapsing(space), 100), glass);
+        assert_alike(&render_seeds(&heroes, 0), &render_seeds(&comparison::collapsing(space), 100), glass);
     }
 }
 
@@ -145,6 +145,6 @@ fn lossless_dispersive_glass_in_an_even_sky_is_1_in_every_channel() {
         let film = film(&scene, &part, SPLITTING, 3, None);
         let mean = Mean::of(&film);
         mean.assert_near([1.0; 3], 9, model);
-        assert!(mean.worst_error([1.0; 3]) < 1e-3, "{mean:?}");
+        assert!(mean.worst_relative_error([1.0; 3]) < 1e-3, "{mean:?}");
     }
 }

@@ -6,7 +6,7 @@ use abbe::material::{Lobes, Material, Scatter, ScatterContext};
 use abbe::math::Frame;
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{NORMAL, context, material, toward};
+use crate::support::arrivals::{NORMAL, context, direction_at, material};
 use crate::support::chi_squared;
 use crate::support::random::Random;
 
@@ -19,7 +19,7 @@ const TEXTS: [&str; 6] = [
     "mask = { material = \"rough\", opacity = 0.3 }",
 ];
 /// Materials that combine a narrow lobe with another one.
-const APART: [&str; 3] = [
+const NARROW_MIXES: [&str; 3] = [
     "plastic = { reflectance = { rgb = [0.9, 0.1, 0.5] }, roughness = 0.31 }",
     "mix = { materials = [\"satin\", \"white\"], amount = { rgb = [0.1, 0.5, 0.6] } }",
     "mask = { material = \"satin\", opacity = 0.3 }",
@@ -37,7 +37,7 @@ fn probabilities(material: &Material<Table>, context: &ScatterContext<4>) -> Vec
     let mut cells = vec![0.0; CELLS[0] * CELLS[1]];
     for (i, j) in (0..up).flat_map(|i| (0..around).map(move |j| (i, j))) {
         let (z, azimuth) = ((i as f64 + 0.5) / up as f64, TAU * (j as f64 + 0.5) / around as f64);
-        let pdf = material.evaluate(context, toward(z, azimuth)).map_or(0.0, |(_, pdf)| pdf);
+        let pdf = material.evaluate(context, direction_at(z, azimuth)).map_or(0.0, |(_, pdf)| pdf);
         cells[i / finer * CELLS[1] + j / finer] += pdf * TAU / (up * around) as f64;
     }
     cells
@@ -46,15 +46,15 @@ fn probabilities(material: &Material<Table>, context: &ScatterContext<4>) -> Vec
 #[test]
 fn directions_follow_their_density_and_bring_what_is_sent_along_them() {
     let frame = Frame::about(NORMAL);
-    let of_all = TEXTS.map(|text| (text, Lobes::ALL));
+    let whole_cases = TEXTS.map(|text| (text, Lobes::ALL));
     let parts = [Lobes::DIFFUSE_REFLECTION, Lobes::NARROW_REFLECTION];
-    let of_parts = APART.into_iter().flat_map(|text| parts.map(|lobes| (text, lobes)));
-    let cases: Vec<_> = of_all.into_iter().chain(of_parts).collect();
+    let part_cases = NARROW_MIXES.into_iter().flat_map(|text| parts.map(|lobes| (text, lobes)));
+    let cases: Vec<_> = whole_cases.into_iter().chain(part_cases).collect();
     for (number, &(text, lobes)) in cases.iter().enumerate() {
         let material = material(text);
         for cos in VIEWS {
             let draw = Draw::<4>::fixed(3);
-            let context = ScatterContext { lobes, ..context(&draw, toward(cos, 0.0), 1.0) };
+            let context = ScatterContext { lobes, ..context(&draw, direction_at(cos, 0.0), 1.0) };
             let (mut random, mut counts, mut missed) = (Random::new(number as u64), vec![0; CELLS[0] * CELLS[1]], 0);
             let mut branches = Vec::new();
             for _ in 0..DRAWS {
@@ -98,15 +98,16 @@ fn directions_follow_their_density_and_bring_what_is_sent_along_them() {
 #[test]
 fn lobes_told_apart_make_up_the_whole() {
     let draw = Draw::<4>::fixed(3);
-    for text in APART {
+    for text in NARROW_MIXES {
         let material = material(text);
         assert!(material.lobes().has_narrow_apart(), "{text}");
         for (cos, z, azimuth) in [(0.95, 0.9, 0.5), (0.5, 0.55, 0.51), (0.1, 0.2, 0.4), (0.7, 0.3, 0.0)] {
-            let of = |lobes: Lobes| {
-                let context = ScatterContext { lobes, ..context(&draw, toward(cos, 0.0), 1.0) };
-                material.evaluate(&context, toward(z, TAU * azimuth)).expect("both are above the surface").0
+            let evaluate_lobes = |lobes: Lobes| {
+                let context = ScatterContext { lobes, ..context(&draw, direction_at(cos, 0.0), 1.0) };
+                material.evaluate(&context, direction_at(z, TAU * azimuth)).expect("both are above the surface").0
             };
-            let [all, base, narrow] = [Lobes::ALL, Lobes::DIFFUSE_REFLECTION, Lobes::NARROW_REFLECTION].map(of);
+            let [all, base, narrow] =
+                [Lobes::ALL, Lobes::DIFFUSE_REFLECTION, Lobes::NARROW_REFLECTION].map(evaluate_lobes);
             for lane in 0..3 {
                 let sum = base[lane] + narrow[lane];
                 assert!((sum / all[lane] - 1.0).abs() < 1e-6, "{text}: {sum} for {}", all[lane]);

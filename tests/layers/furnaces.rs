@@ -3,9 +3,9 @@
 use abbe::material::{Interface, Material, Scatter, diffuse_transmittance};
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{self, PARTS, context, material, toward};
+use crate::support::arrivals::{self, BASE_MATERIALS, context, direction_at, material};
 use crate::support::random::Random;
-use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
+use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, render_film, view};
 
 const COSINES: [f64; 12] = [0.001, 0.003, 0.01, 0.03, 0.06, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0];
 const DRAWS: u32 = 1 << 14;
@@ -13,7 +13,7 @@ const DRAWS: u32 = 1 << 14;
 /// Returns what each band shows of a uniform environment of radiance 1.
 fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let draw = Draw::<4>::fixed(3);
-    arrivals::furnace(material, &context(&draw, toward(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
+    arrivals::furnace(material, &context(&draw, direction_at(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn light_goes_both_ways_alike() {
         for _ in 0..2000 {
             let mut direction = || (random.number().max(1e-4), random.number() * std::f64::consts::TAU);
             let ((a, around_a), (b, around_b)) = (direction(), direction());
-            let (wo, wi) = (toward(a, around_a), toward(b, around_b));
+            let (wo, wi) = (direction_at(a, around_a), direction_at(b, around_b));
             let [there, back] = [(wo, wi), (wi, wo)]
                 .map(|(wo, wi)| material.evaluate(&context(&draw, wo, 1.0), wi).expect("both lie above the surface").0);
             for lane in 0..3 {
@@ -137,10 +137,10 @@ fn lossless_balls_are_invisible_in_an_even_environment() {
         for transport in [SINGLE_PATH, SPLITTING] {
             let text = view([0.0, 0.0, 9.0], [0.0; 3], 16.0, 32)
                 + "[render]\nsamples = 256\n"
-                + PARTS
+                + BASE_MATERIALS
                 + &body("tested", material, &[ball])
                 + &environment(1.0);
-            let mean = Mean::of(&image(&text, transport).0);
+            let mean = Mean::of(&render_film(&text, transport).0);
             println!("{name}: {mean:.5?}");
             for band in 0..3 {
                 let off = (mean.value[band] - 1.0).abs();
@@ -150,8 +150,8 @@ fn lossless_balls_are_invisible_in_an_even_environment() {
     }
     // Without random choices: a mix of mirror and pane, lit only by the environment.
     let mirrors = "mix = { materials = [\"mirror\", \"pane\"], amount = 0.25 }";
-    let text = view([0.0, 0.0, 9.0], [0.0; 3], 10.0, 8) + PARTS + &body("tested", mirrors, &[ball]);
-    let (film, report) = image(&(text + &environment(1.0)), EVERY_BRANCH);
+    let text = view([0.0, 0.0, 9.0], [0.0; 3], 10.0, 8) + BASE_MATERIALS + &body("tested", mirrors, &[ball]);
+    let (film, report) = render_film(&(text + &environment(1.0)), EVERY_BRANCH);
     let even = film.pixels.iter().all(|pixel| pixel.rgb.iter().all(|x| (x - 1.0).abs() < 1e-5));
     assert!(even && report.dropped < 1e-6, "{report:?}");
 }

@@ -1,14 +1,14 @@
 //! Lamps above plastic and mixes: next-event estimation and random hits agree.
 
-use crate::support::arrivals::PARTS;
-use crate::support::scenes::{GROUND, Mean, SPLITTING, assert_aimed_at_as_met, body, lamps, view};
+use crate::support::arrivals::BASE_MATERIALS;
+use crate::support::scenes::{GROUND, Mean, SPLITTING, assert_next_event_agrees, body, lamps, view};
 
 const LAMP: &str = "sphere = { center = [-1, 2, 0], radius = 0.7 }";
 
 fn floor(material: &str, lamp: &str, samples: u32) -> String {
     view([4.0, 3.0, 0.5], [0.5, 0.0, 0.0], 25.0, 12)
         + &format!("[render]\nsamples = {samples}\n")
-        + PARTS
+        + BASE_MATERIALS
         + &body("floor", material, &[GROUND])
         + lamp
 }
@@ -24,7 +24,7 @@ fn aiming_at_a_lamp_and_meeting_it_show_the_same() {
     ];
     for material in cases {
         let [aimed_at, met] = [floor(material, &aimed_at, 256), floor(material, &met, 2048)];
-        assert_aimed_at_as_met([&aimed_at, &met], 8, 0.01, 2 * cases.len(), material);
+        assert_next_event_agrees([&aimed_at, &met], 8, 0.01, 2 * cases.len(), material);
     }
 }
 
@@ -33,15 +33,15 @@ fn a_smooth_coat_still_mirrors_where_diffuse_light_has_ended() {
     // At the mirror image of a lamp, with no diffuse bounce left, the coat shows the lamp and the base shows its
     // irradiance.
     let [lamp, _] = lamps(&[LAMP]);
-    let shown = |bounces: &str| {
+    let floor_mean = |bounces: &str| {
         let text = floor("plastic = { reflectance = 0.5 }", &lamp, 512)
             .replace("[render]\n", &format!("[render]\n{bounces}"))
             .replace("look_at = [0.5, 0.0, 0.0]", "look_at = [1.1, 0, 0.15]");
-        Mean::rendered(&text, SPLITTING, 4)
+        Mean::render_text(&text, SPLITTING, 4)
     };
-    let (all, none) = (shown(""), shown("diffuse_bounces = 0\n"));
+    let (all, none) = (floor_mean(""), floor_mean("diffuse_bounces = 0\n"));
     // A lone floor sends no light back to itself.
-    let off = none.beside(&all);
-    assert!(off.worst_error(all.value) < 0.01, "{off:?}");
+    let off = none.with_joint_error(&all);
+    assert!(off.worst_relative_error(all.value) < 0.01, "{off:?}");
     off.assert_near(all.value, 1, "without diffuse bounces");
 }

@@ -4,7 +4,7 @@ use abbe::film::Film;
 
 use crate::support::larger::larger;
 use crate::support::scenes::{
-    EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, SPLITTING, assert_aimed_at_as_met, body, image, lamps, view,
+    EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, SPLITTING, assert_next_event_agrees, body, lamps, render_film, view,
 };
 
 const SHEET: &str = "quad = { center = [0, 1, 0], u = [40, 0, 0], v = [0, 0, 40] }";
@@ -28,7 +28,7 @@ fn masked(material: &str, opacity: &str) -> String {
 }
 
 /// Returns the largest difference of two films, relative to their brightest number.
-fn apart(a: &Film, b: &Film) -> f32 {
+fn largest_difference(a: &Film, b: &Film) -> f32 {
     let numbers = |film: &Film| film.pixels.iter().flat_map(|pixel| pixel.rgb).collect::<Vec<_>>();
     let (a, b) = (numbers(a), numbers(b));
     let most = a.iter().chain(&b).fold(f32::MIN_POSITIVE, |most, x| larger(most, *x));
@@ -39,16 +39,16 @@ fn apart(a: &Film, b: &Film) -> f32 {
 fn a_sheet_of_opacity_0_is_not_there_and_one_of_opacity_1_is_its_material() {
     for lights in [POINT, SUN, LAMP, SKY] {
         for transport in [SINGLE_PATH, SPLITTING] {
-            let without = image(&under("", lights, 16), transport).0;
-            let clear = image(&under(&masked("black", "0"), lights, 16), transport).0;
+            let without = render_film(&under("", lights, 16), transport).0;
+            let clear = render_film(&under(&masked("black", "0"), lights, 16), transport).0;
             // The random numbers are the same. Only the start of the continued ray beyond a hole is rounded
             // differently.
-            assert!(apart(&without, &clear) < 1e-5, "{lights}: {}", apart(&without, &clear));
+            assert!(largest_difference(&without, &clear) < 1e-5, "{lights}: {}", largest_difference(&without, &clear));
             let white = body("sheet", "diffuse = { reflectance = 0.7 }", &[SHEET]);
             let inner = "[material.inner]\ndiffuse = { reflectance = 0.7 }\n".to_owned() + &masked("inner", "1");
-            let opaque = image(&under(&white, lights, 16), transport).0;
-            let covered = image(&under(&inner, lights, 16), transport).0;
-            assert_eq!(apart(&opaque, &covered), 0.0, "{lights}");
+            let opaque = render_film(&under(&white, lights, 16), transport).0;
+            let covered = render_film(&under(&inner, lights, 16), transport).0;
+            assert_eq!(largest_difference(&opaque, &covered), 0.0, "{lights}");
         }
     }
 }
@@ -58,11 +58,11 @@ fn lights_shine_through_holes_in_the_share_that_is_open() {
     let opacity = "{ rgb = [0.25, 0.5, 0.9] }";
     for (name, lights) in [("point", POINT), ("sun", SUN), ("lamp", LAMP)] {
         for transport in [SINGLE_PATH, SPLITTING] {
-            let expected = Mean::rendered(&under("", lights, 64), transport, 8).times([0.75, 0.5, 0.1]);
-            let through = Mean::rendered(&under(&masked("black", opacity), lights, 256), transport, 8);
-            let through = through.beside(&expected);
+            let expected = Mean::render_text(&under("", lights, 64), transport, 8).times([0.75, 0.5, 0.1]);
+            let through = Mean::render_text(&under(&masked("black", opacity), lights, 256), transport, 8);
+            let through = through.with_joint_error(&expected);
             println!("{name}: {through:.5?} for {expected:.5?}");
-            assert!(through.worst_error(expected.value) < 0.02, "{name}: {through:?}");
+            assert!(through.worst_relative_error(expected.value) < 0.02, "{name}: {through:?}");
             through.assert_near(expected.value, 6, name);
         }
     }
@@ -72,9 +72,9 @@ fn lights_shine_through_holes_in_the_share_that_is_open() {
 fn two_sheets_let_through_the_product() {
     let second =
         "[[object]]\nshape.quad = { center = [0, 1.5, 0], u = [40, 0, 0], v = [0, 0, 40] }\nmaterial = \"sheet\"\n";
-    let expected = Mean::rendered(&under("", POINT, 16), SPLITTING, 8).times([0.36; 3]);
-    let through = Mean::rendered(&under(&(masked("black", "0.4") + second), POINT, 64), SPLITTING, 8);
-    through.beside(&expected).assert_near(expected.value, 1, "two sheets");
+    let expected = Mean::render_text(&under("", POINT, 16), SPLITTING, 8).times([0.36; 3]);
+    let through = Mean::render_text(&under(&(masked("black", "0.4") + second), POINT, 64), SPLITTING, 8);
+    through.with_joint_error(&expected).assert_near(expected.value, 1, "two sheets");
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn aiming_through_a_mask_and_meeting_the_lamp_beyond_show_the_same() {
         under(&(rough.to_owned() + &masked("inner", "0.5")), lamp, 512).replace("\"floor\"\n", "\"gold\"\n")
     };
     let [aimed_at, met] = lamps(&["sphere = { center = [0, 2.2, 0], radius = 0.8 }"]).map(|lamp| sheet(&lamp));
-    assert_aimed_at_as_met([&aimed_at, &met], 8, 0.02, 2, "through a mask");
+    assert_next_event_agrees([&aimed_at, &met], 8, 0.02, 2, "through a mask");
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn a_hole_before_the_camera_leaves_no_trace_in_alpha_and_depth() {
             + "[render]\nsamples = 64\n[material.black]\ndiffuse = { reflectance = 0 }\n"
             + &body("holes", &format!("mask = {{ material = \"black\", opacity = {opacity:?} }}"), &[ball])
             + SKY;
-        let film = image(&text, transport).0;
+        let film = render_film(&text, transport).0;
         (film.pixels.iter().map(|pixel| f64::from(pixel.alpha)).sum::<f64>() / film.pixels.len() as f64, film)
     };
     for transport in [SINGLE_PATH, SPLITTING, EVERY_BRANCH] {
@@ -113,9 +113,9 @@ fn a_hole_before_the_camera_leaves_no_trace_in_alpha_and_depth() {
 #[test]
 fn holes_are_no_bounces() {
     let text = under(&masked("black", "0.5"), LAMP, 64).replace("[render]\n", "[render]\nmax_bounces = 1\n");
-    let all = Mean::rendered(&under(&masked("black", "0.5"), LAMP, 64), SPLITTING, 8);
-    let one = Mean::rendered(&text, SPLITTING, 8);
-    one.beside(&all).assert_near(all.value, 1, "one bounce lights the floor through the sheet");
+    let all = Mean::render_text(&under(&masked("black", "0.5"), LAMP, 64), SPLITTING, 8);
+    let one = Mean::render_text(&text, SPLITTING, 8);
+    one.with_joint_error(&all).assert_near(all.value, 1, "one bounce lights the floor through the sheet");
 }
 
 #[test]
@@ -123,7 +123,7 @@ fn holes_that_vary_over_a_sheet_let_light_through_where_they_are() {
     let center =
         |sheet: &str| under(sheet, POINT, 1).replace("[render]", "filter = \"center\"\n[render]\ndiffuse_bounces = 0");
     let (open, checkered) = (center(""), center(&masked("black", "{ checker = [0, 1], repeat = 300 }")));
-    let [open, checkered] = [open, checkered].map(|text| image(&text, SPLITTING).0);
+    let [open, checkered] = [open, checkered].map(|text| render_film(&text, SPLITTING).0);
     let shares: Vec<f32> = open.pixels.iter().zip(&checkered.pixels).map(|(a, b)| b.rgb[1] / a.rgb[1]).collect();
     let lit = shares.iter().filter(|share| (*share - 1.0).abs() < 1e-6).count();
     let dark = shares.iter().filter(|share| **share == 0.0).count();

@@ -3,14 +3,14 @@
 use abbe::plan::plan;
 use abbe::trace::Transport;
 
-use crate::support::arrivals::PARTS;
+use crate::support::arrivals::BASE_MATERIALS;
 use crate::support::scenes::{body, scene, view};
 
 const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
 
 fn planned(material: &str, more: &str) -> abbe::plan::Plan {
     let head = view([0.0, 0.0, 9.0], [0.0; 3], 20.0, 8).replace("height = 8\n", "height = 8\nfilter = \"center\"\n");
-    plan(&scene(&(head + more + PARTS + &body("tested", material, &[BALL]) + POINT)))
+    plan(&scene(&(head + more + BASE_MATERIALS + &body("tested", material, &[BALL]) + POINT)))
 }
 
 const POINT: &str = "[[light]]\npoint = { position = [0, 3, 3], intensity = 10 }\n";

@@ -44,7 +44,7 @@ fn window() -> Opening {
 }
 
 /// Aims bounces at the window, so that little noise is left besides that of light vertices.
-fn aim(method: &mut Method) {
+fn aim_at_window(method: &mut Method) {
     let Opening { center, half } = window();
     method.bright = Some(BrightPlaces {
         within: Bounds { min: DVec3::new(-2.1, -0.1, -2.6), max: DVec3::new(2.1, 3.1, 2.6) },
@@ -127,7 +127,7 @@ fn light_paths_through_openings_change_no_mean() {
     let text = room("", &[image, ball("glass", "dielectric = { index = 1.5 }")]);
     for of_pass in [Vec::new(), vec![half]] {
         let change = |method: &mut Method| {
-            aim(method);
+            aim_at_window(method);
             let map = Some(MapPasses { count: 8, photons: 8192, radius: 0.2, chance: 1.0 });
             let to = vec![Smoothness::Whole];
             let openings = of_pass.clone();
@@ -144,7 +144,7 @@ fn light_paths_through_openings_change_no_mean() {
             let openings = SkyOpenings { openings: openings.clone(), missed: *missed };
             world.with_light_vertices(Vec::new(), openings)
         };
-        let worst = assert_same(what, text, &aim, &with, cases.len());
+        let worst = assert_same(what, text, &aim_at_window, &with, cases.len());
         println!("{what}: at most {worst:.1} sigma");
     }
 }
@@ -171,8 +171,8 @@ fn light_paths_of_suns_start_through_openings_that_bounces_find_no_light_of() {
 fn the_plan_starts_light_paths_of_skies_through_openings() {
     let text = room("", &[environment(1.0)]).replace("width = 12\nheight = 12", "width = 384\nheight = 384");
     let decided = plan(&scene(&text));
-    let told = "light between surfaces that comes from the sky through openings is found at light vertices";
-    assert!(decided.because.iter().any(|line| line.starts_with(told)), "{:?}", decided.because);
+    let reason = "light between surfaces that comes from the sky through openings is found at light vertices";
+    assert!(decided.because.iter().any(|line| line.starts_with(reason)), "{:?}", decided.because);
     let SkyOpenings { openings, missed } = &decided.method.openings;
     assert!(openings.len() == 1 && *missed < 0.01, "{openings:?}, {missed}");
     let (found, window) = (openings[0], window());

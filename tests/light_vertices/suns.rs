@@ -6,7 +6,9 @@ use abbe::math::DVec3;
 use abbe::plan::plan;
 use abbe::trace::{LightPass, MapPasses, Method, SkyOpenings, Smoothness, SunlitPlaces, World};
 
-use super::{LAMP, SEEDS, WHITE, assert_same, assert_shows, ball, films, lamp, looking, room, screen, smooth, walls};
+use super::{
+    LAMP, SEEDS, WHITE, add_light_vertices, assert_same, assert_shows, ball, films, lamp, room, screen, smooth, walls,
+};
 use crate::support::scenes::{body, environment, quad, scene, view};
 
 const SUN: &str = "[[light]]\nsun = { toward = [1, 0.7, 0.1], irradiance = { rgb = [15, 13, 10] } }\n";
@@ -20,12 +22,12 @@ const GLOSSY: &str = "plastic = { reflectance = 0.6, index = 1.5, roughness = 0.
 const PLASTIC: &str = "plastic = { reflectance = 0.6, index = 1.5 }";
 
 /// Returns a sun so wide that paths from the camera hit its mirror reflections often enough to estimate a mean.
-fn wide() -> String {
+fn wide_sun() -> String {
     sun("angular_diameter = 40")
 }
 
 /// Returns the box without its right wall, except for a strip at its lower edge.
-fn open(render: &str, more: &[String]) -> String {
+fn open_box(render: &str, more: &[String]) -> String {
     let walls = walls();
     let strip = quad([2.0, 0.3, 0.0], [0.0, 0.0, 2.5], [0.0, 0.3, 0.0]);
     let shapes: Vec<&str> = [0, 1, 3, 4, 5].map(|i| walls[i].as_str()).into_iter().chain([strip.as_str()]).collect();
@@ -49,7 +51,7 @@ fn pane() -> String {
 }
 
 fn rooms() -> Vec<(&'static str, String)> {
-    let with = |more: &[String]| open("", more);
+    let with = |more: &[String]| open_box("", more);
     let (sky, sun_alone) = (environment(0.8), SUN.to_owned());
     let plane = "[[object]]\nshape.plane = { point = [0, -0.2, 0], normal = [0, 1, 0] }\nmaterial = \"wall\"\n";
     let holes = "[material.paint]\ndiffuse = { reflectance = 0.5 }\n".to_owned()
@@ -66,7 +68,7 @@ fn rooms() -> Vec<(&'static str, String)> {
         ("a lamp under a sky", with(&[lamp(), sky.clone(), cubes()])),
         ("a sun, a sky and a lamp", with(&[sun_alone.clone(), sky.clone(), lamp(), cubes()])),
         ("parallel light", with(&[sun("angular_diameter = 0"), sky.clone(), cubes()])),
-        ("a wide sun", with(&[wide(), sky.clone(), cubes()])),
+        ("a wide sun", with(&[wide_sun(), sky.clone(), cubes()])),
         (
             "two suns",
             with(&[
@@ -76,7 +78,7 @@ fn rooms() -> Vec<(&'static str, String)> {
             ]),
         ),
         ("a plane without end", with(&[sun_alone.clone(), sky.clone(), plane.into(), cubes()])),
-        ("a mirror", with(&[wide(), sky.clone(), ball("silver", "mirror = { reflectance = 0.9 }")])),
+        ("a mirror", with(&[wide_sun(), sky.clone(), ball("silver", "mirror = { reflectance = 0.9 }")])),
         (
             "rough metal",
             with(&[sun_alone.clone(), ball("metal", "conductor = { metal = \"copper\", roughness = 0.3 }")]),
@@ -84,9 +86,12 @@ fn rooms() -> Vec<(&'static str, String)> {
         ("plastic", with(&[sun_alone.clone(), ball("plastic", "plastic = { reflectance = 0.6, index = 1.5 }")])),
         ("a smooth mesh", with(&[sun_alone.clone(), smooth("diffuse = { reflectance = { rgb = [0.8, 0.5, 0.2] } }")])),
         ("holes", with(&[sun_alone.clone(), sky.clone(), holes, cubes()])),
-        ("a mirror on the wall", open("diffuse_bounces = 1", &[wide(), screen("mirror = { reflectance = 0.9 }")])),
-        ("two diffuse bounces", open("diffuse_bounces = 2", &[sun_alone.clone(), sky.clone(), cubes()])),
-        ("three bounces", open("max_bounces = 3", &[sun_alone, sky, cubes()])),
+        (
+            "a mirror on the wall",
+            open_box("diffuse_bounces = 1", &[wide_sun(), screen("mirror = { reflectance = 0.9 }")]),
+        ),
+        ("two diffuse bounces", open_box("diffuse_bounces = 2", &[sun_alone.clone(), sky.clone(), cubes()])),
+        ("three bounces", open_box("max_bounces = 3", &[sun_alone, sky, cubes()])),
     ]
 }
 
@@ -96,7 +101,7 @@ fn rooms() -> Vec<(&'static str, String)> {
 fn light_vertices_of_some_lights_change_no_mean() {
     let rooms = rooms();
     for (what, text) in &rooms {
-        let worst = assert_same(what, text, &|_| (), &looking, rooms.len());
+        let worst = assert_same(what, text, &|_| (), &add_light_vertices, rooms.len());
         println!("{what}: at most {worst:.1} sigma");
     }
 }
@@ -105,7 +110,7 @@ fn light_vertices_of_some_lights_change_no_mean() {
 /// lies.
 #[test]
 fn paths_may_start_in_any_part_of_a_suns_light() {
-    let text = open("", &[SUN.into(), environment(0.5), cubes(), pane()]);
+    let text = open_box("", &[SUN.into(), environment(0.5), cubes(), pane()]);
     let parts = [
         ("a small part", [-1.0, 0.4, 0.3], 0.5, None),
         ("half", [0.0, 1.0, -2.5], 2.5, Some(64 * 32 + 32)),
@@ -148,7 +153,7 @@ fn l12_what_is_bright_in_an_image_of_the_sky_lights_a_room() {
         let sunlit = SunlitPlaces { light: 0, center: DVec3::from(center), radius, cells };
         move |world: &World| world.with_light_vertices(vec![sunlit.clone()], SkyOpenings::default())
     };
-    let with = |more: &[String]| open("", &[std::slice::from_ref(&sky), more].concat());
+    let with = |more: &[String]| open_box("", &[std::slice::from_ref(&sky), more].concat());
     let map = LightPass {
         photons: 8192,
         lights: vec![0],
@@ -156,22 +161,27 @@ fn l12_what_is_bright_in_an_image_of_the_sky_lights_a_room() {
         to: Smoothness::ALL.to_vec(),
         map: Some(MapPasses { count: 2, photons: 8192, radius: 0.5, chance: 0.5 }),
     };
-    type Looking = Box<dyn Fn(&World) -> World>;
-    let rooms: [(&str, String, Option<LightPass>, Looking); 10] = [
-        ("alone", with(&[cubes()]), None, Box::new(looking)),
-        ("a pane", with(&[cubes(), pane()]), None, Box::new(looking)),
-        ("a lamp", with(&[cubes(), lamp()]), None, Box::new(looking)),
-        ("a sun as well", with(&[cubes(), SUN.into()]), None, Box::new(looking)),
-        ("a mirror", with(&[ball("silver", "mirror = { reflectance = 0.9 }")]), None, Box::new(looking)),
-        ("plastic", with(&[ball("plastic", PLASTIC)]), None, Box::new(looking)),
-        ("plastic and photons", with(&[ball("plastic", PLASTIC)]), Some(map.clone()), Box::new(looking)),
-        ("glass and photons", with(&[ball("glass", "dielectric = { index = 1.5 }")]), Some(map), Box::new(looking)),
+    type AddVertices = Box<dyn Fn(&World) -> World>;
+    let rooms: [(&str, String, Option<LightPass>, AddVertices); 10] = [
+        ("alone", with(&[cubes()]), None, Box::new(add_light_vertices)),
+        ("a pane", with(&[cubes(), pane()]), None, Box::new(add_light_vertices)),
+        ("a lamp", with(&[cubes(), lamp()]), None, Box::new(add_light_vertices)),
+        ("a sun as well", with(&[cubes(), SUN.into()]), None, Box::new(add_light_vertices)),
+        ("a mirror", with(&[ball("silver", "mirror = { reflectance = 0.9 }")]), None, Box::new(add_light_vertices)),
+        ("plastic", with(&[ball("plastic", PLASTIC)]), None, Box::new(add_light_vertices)),
+        ("plastic and photons", with(&[ball("plastic", PLASTIC)]), Some(map.clone()), Box::new(add_light_vertices)),
+        (
+            "glass and photons",
+            with(&[ball("glass", "dielectric = { index = 1.5 }")]),
+            Some(map),
+            Box::new(add_light_vertices),
+        ),
         ("a small part", with(&[cubes()]), None, Box::new(part(Vec::new(), [-1.0, 0.4, 0.3], 0.5))),
         ("half", with(&[cubes(), pane()]), None, Box::new(part(vec![(2080, 1.0)], [0.0, 1.0, -2.5], 2.5))),
     ];
-    for (what, text, pass, looking) in &rooms {
+    for (what, text, pass, add_light_vertices) in &rooms {
         let photons = |method: &mut Method| method.light_pass = pass.clone();
-        let worst = assert_same(what, text, &photons, looking, rooms.len());
+        let worst = assert_same(what, text, &photons, add_light_vertices, rooms.len());
         println!("{what}: at most {worst:.1} sigma");
     }
 }
@@ -195,32 +205,42 @@ fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
         room(WHITE, render, &[globe, body("lamp", LAMP, &[&sphere(0.3)])])
     };
     let rooms = [
-        ("glass in the sun", open("", &[SUN.into(), environment(0.5), glass()]), vec![0], Some(map)),
-        ("a pane", open("", &[SUN.into(), environment(0.5), cubes(), pane()]), vec![0], Some(map)),
-        ("smooth glass in the sun", open("", &[SUN.into(), environment(0.5), bent()]), vec![0], Some(map)),
-        ("smooth glass under a lamp", open("", &[lamp(), bent(), cubes()]), vec![0], Some(map)),
-        ("smooth and rough glass", open("", &[lamp(), bent(), frosted()]), vec![0], Some(map)),
-        ("photons that are shown", open("", &[wide(), environment(0.5), glass()]), vec![0], None),
+        ("glass in the sun", open_box("", &[SUN.into(), environment(0.5), glass()]), vec![0], Some(map)),
+        ("a pane", open_box("", &[SUN.into(), environment(0.5), cubes(), pane()]), vec![0], Some(map)),
+        ("smooth glass in the sun", open_box("", &[SUN.into(), environment(0.5), bent()]), vec![0], Some(map)),
+        ("smooth glass under a lamp", open_box("", &[lamp(), bent(), cubes()]), vec![0], Some(map)),
+        ("smooth and rough glass", open_box("", &[lamp(), bent(), frosted()]), vec![0], Some(map)),
+        ("photons that are shown", open_box("", &[wide_sun(), environment(0.5), glass()]), vec![0], None),
         ("a lamp in a globe", globe(""), vec![0], Some(sharp)),
         ("a lamp in a globe, two diffuse bounces", globe("diffuse_bounces = 2"), vec![0], Some(sharp)),
         ("a lamp in a globe, four bounces", globe("max_bounces = 4"), vec![0], Some(sharp)),
-        ("plastic in the sun", open("", &[SUN.into(), environment(0.5), plastic(), cubes()]), vec![0], Some(map)),
-        ("plastic under a lamp", open("", &[lamp(), plastic(), cubes()]), vec![0], Some(map)),
-        ("a smooth mesh of plastic", open("", &[SUN.into(), lamp(), smooth(PLASTIC)]), vec![0, 1], Some(map)),
-        ("plastic, and photons that are shown", open("", &[wide(), environment(0.5), plastic()]), vec![0], None),
+        ("plastic in the sun", open_box("", &[SUN.into(), environment(0.5), plastic(), cubes()]), vec![0], Some(map)),
+        ("plastic under a lamp", open_box("", &[lamp(), plastic(), cubes()]), vec![0], Some(map)),
+        ("a smooth mesh of plastic", open_box("", &[SUN.into(), lamp(), smooth(PLASTIC)]), vec![0, 1], Some(map)),
+        (
+            "plastic, and photons that are shown",
+            open_box("", &[wide_sun(), environment(0.5), plastic()]),
+            vec![0],
+            None,
+        ),
         (
             "metal in the sun",
-            open("", &[SUN.into(), environment(0.5), ball("metal", METAL), cubes()]),
+            open_box("", &[SUN.into(), environment(0.5), ball("metal", METAL), cubes()]),
             vec![0],
             Some(map),
         ),
-        ("glossy plastic", open("", &[lamp(), ball("glossy", GLOSSY), cubes()]), vec![0], Some(map)),
-        ("glossy plastic, shown", open("", &[lamp(), ball("glossy", GLOSSY), cubes()]), vec![0], None),
-        ("a smooth mesh of metal", open("", &[SUN.into(), lamp(), smooth(METAL)]), vec![0, 1], Some(map)),
-        ("a smooth mesh of glossy plastic", open("", &[SUN.into(), lamp(), smooth(GLOSSY)]), vec![0, 1], Some(map)),
+        ("glossy plastic", open_box("", &[lamp(), ball("glossy", GLOSSY), cubes()]), vec![0], Some(map)),
+        ("glossy plastic, shown", open_box("", &[lamp(), ball("glossy", GLOSSY), cubes()]), vec![0], None),
+        ("a smooth mesh of metal", open_box("", &[SUN.into(), lamp(), smooth(METAL)]), vec![0, 1], Some(map)),
+        ("a smooth mesh of glossy plastic", open_box("", &[SUN.into(), lamp(), smooth(GLOSSY)]), vec![0, 1], Some(map)),
         ("metal in a closed room", room(WHITE, "", &[lamp(), ball("metal", METAL)]), vec![0], Some(map)),
         ("glossy plastic in a closed room", room(WHITE, "", &[lamp(), ball("glossy", GLOSSY)]), vec![0], Some(map)),
-        ("photons of the lamp alone", open("", &[SUN.into(), lamp(), environment(0.5), glass()]), vec![1], Some(map)),
+        (
+            "photons of the lamp alone",
+            open_box("", &[SUN.into(), lamp(), environment(0.5), glass()]),
+            vec![1],
+            Some(map),
+        ),
     ];
     for (what, text, lights, map) in &rooms {
         let photons = |method: &mut Method| {
@@ -232,7 +252,7 @@ fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
                 map: *map,
             });
         };
-        let worst = assert_same(what, text, &photons, &looking, rooms.len());
+        let worst = assert_same(what, text, &photons, &add_light_vertices, rooms.len());
         println!("{what}: at most {worst:.1} sigma");
     }
 }
@@ -259,7 +279,7 @@ fn what_a_sunlit_disc_sends_has_its_closed_form() {
         let irradiance = 13.0 * 0.7 / (1.0_f64 + 0.49 + 0.01).sqrt();
         let factor = radius * radius / (radius * radius + height * height);
         let expected = 0.5 / PI * 0.6 * irradiance * factor;
-        let films = films(&text, &|_| (), Some(&looking), 10 * SEEDS);
+        let films = films(&text, &|_| (), Some(&add_light_vertices), 10 * SEEDS);
         assert_shows(&format!("radius {radius}, height {height}"), &films, expected, [1e-4, 0.02]);
     }
 }
@@ -272,7 +292,7 @@ fn a_lamp_far_away_has_no_light_vertices() {
         let toward = DVec3::new(1.0, 0.7, 0.1);
         let (center, radius) = (toward * distance, 0.1 * distance);
         let shape = format!("sphere = {{ center = [{}, {}, {}], radius = {radius} }}", center.x, center.y, center.z);
-        let text = open("", &[body("lamp", "emissive = { radiance = 300 }", &[&shape]), cubes()]);
+        let text = open_box("", &[body("lamp", "emissive = { radiance = 300 }", &[&shape]), cubes()]);
         let decided = plan(&scene(&text.replace("width = 12\nheight = 12", "width = 384\nheight = 384")));
         assert_eq!(decided.method.light_vertices, expected, "at {distance}: {:?}", decided.because);
     }

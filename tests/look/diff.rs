@@ -6,7 +6,7 @@ use abbe::{Options, Scene};
 use super::files::{Exr, ramp};
 use crate::support::pictures::read_png;
 use crate::support::run::{Answer, Folder, render};
-use crate::support::scenes::{films_of, moments, scene};
+use crate::support::scenes::{films_of, mean_and_variance, scene};
 
 /// A lamp above matte balls: noise in nearly every pixel, and a sky without noise.
 const SCENE: &str = r#"
@@ -38,7 +38,8 @@ fn with_variance(first_seed: u64) -> Exr {
     let (mut means, mut variances) = (vec![vec![0.0; count]; 3], vec![vec![0.0; count]; 3]);
     for channel in 0..3 {
         for pixel in 0..count {
-            let (mean, variance) = moments(films.iter().map(|film| f64::from(film.pixels[pixel].rgb[channel])));
+            let (mean, variance) =
+                mean_and_variance(films.iter().map(|film| f64::from(film.pixels[pixel].rgb[channel])));
             means[channel][pixel] = mean as f32;
             variances[channel][pixel] = (variance / 16.0) as f32;
         }
@@ -72,10 +73,10 @@ fn difference(a: &Exr, b: &Exr) -> Difference {
 
 fn assert_says(answer: &Answer, code: i32, lines: &[&str]) {
     assert_eq!((answer.code, &*answer.stderr), (Some(code), ""), "{}", answer.stdout);
-    let told = answer.stdout.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
-    let told: Vec<String> = told.collect();
+    let printed = answer.stdout.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
+    let printed: Vec<String> = printed.collect();
     for line in lines {
-        assert!(told.iter().any(|found| found.starts_with(line)), "{line:?} is not in\n{}", answer.stdout);
+        assert!(printed.iter().any(|found| found.starts_with(line)), "{line:?} is not in\n{}", answer.stdout);
     }
 }
 
@@ -135,7 +136,7 @@ fn it_is_the_same_where_layers_are_parts_of_their_own() {
 }
 
 #[test]
-fn few_samples_know_their_own_spread_badly() {
+fn few_samples_estimate_their_own_spread_badly() {
     let with_samples = |image: &Exr, count: f32| {
         let mut image = image.clone();
         image.parts[0].1.push(("samples.V", vec![count; 200]));
@@ -252,7 +253,7 @@ fn images_whose_alpha_alone_differs_do_not_agree() {
 fn alpha_that_is_empty_here_and_full_there_is_no_noise() {
     let folder = Folder::new();
     let [told_apart, unknown] = ["more than chance explains", "its noise is unknown"];
-    for (samples, opposite, code, said) in
+    for (samples, opposite, code, verdict) in
         [("4", 157, 1, told_apart), ("4", 156, 0, unknown), ("16", 1, 1, told_apart), ("", 200, 0, unknown)]
     {
         let with_alpha = |alpha: fn(usize) -> f32, opposite: usize| {
@@ -267,7 +268,11 @@ fn alpha_that_is_empty_here_and_full_there_is_no_noise() {
         let (a, mut b) = (with_alpha(alpha, 0), with_alpha(alpha, opposite));
         b.channel("G")[67] += 1e-3;
         let answer = diff(&folder, &a, &b, &[]);
-        assert!(answer.code == Some(code) && answer.stdout.contains(said), "{samples}, {opposite}: {}", answer.stdout);
+        assert!(
+            answer.code == Some(code) && answer.stdout.contains(verdict),
+            "{samples}, {opposite}: {}",
+            answer.stdout
+        );
     }
 }
 
@@ -298,8 +303,8 @@ fn values_that_are_not_finite_agree_only_with_their_like() {
     let folder = Folder::new();
     let (mut a, mut b) = (ramp(), ramp());
     a.channel("R")[2] = f32::NAN;
-    let told = ["a.exr and b.exr differ", "not finite 1 of 8 pixels, left out; 1 of them differ"];
-    assert_says(&diff(&folder, &a, &b, &["--tolerance", "1"]), 1, &told);
+    let printed = ["a.exr and b.exr differ", "not finite 1 of 8 pixels, left out; 1 of them differ"];
+    assert_says(&diff(&folder, &a, &b, &["--tolerance", "1"]), 1, &printed);
     b.channel("R")[2] = f32::NAN;
     assert_says(&diff(&folder, &a, &b, &[]), 0, &["a.exr and b.exr agree: all values are equal"]);
 }
@@ -338,7 +343,7 @@ fn layers_in_windows_of_their_own_are_compared_where_both_have_pixels() {
 }
 
 #[test]
-fn what_only_one_of_the_files_has_is_told() {
+fn what_only_one_of_the_files_has_is_listed() {
     let folder = Folder::new();
     let (mut a, mut b) = (ramp(), ramp());
     a.parts[0].1.extend([("N.X", vec![0.0; 8]), ("N.Y", vec![0.0; 8]), ("Z", vec![1.0; 8])]);
@@ -371,33 +376,33 @@ fn a_pixel_that_is_no_number_in_one_image_alone_is_white_and_named() {
 #[test]
 fn of_a_crop_the_pixels_that_both_have_are_compared() {
     let folder = Folder::with("room.toml", SCENE);
-    let made = |name: &str, more: &[&str]| {
+    let make_file = |name: &str, more: &[&str]| {
         let words = [&["room.toml", "--quiet", "--samples", "16", "--layers", "variance,samples", "--exr", name], more];
         assert_eq!(render(&folder, &words.concat()).code, Some(0));
     };
-    made("whole.exr", &[]);
-    made("crop.exr", &["--crop", "6,4,9,5"]);
-    made("wide.exr", &["--overscan", "3"]);
-    made("other.exr", &["--crop", "6,4,9,5", "--seed", "7"]);
-    made("beside.exr", &["--crop", "0,0,3,3"]);
-    made("small.exr", &["--set", "film.width=16"]);
-    let compared = |a: &str, b: &str| render(&folder, &["diff", a, b, "--png", "where.png"]);
-    let here = "in the 9 x 5 pixels at (6, 4) that both have";
+    make_file("whole.exr", &[]);
+    make_file("crop.exr", &["--crop", "6,4,9,5"]);
+    make_file("wide.exr", &["--overscan", "3"]);
+    make_file("other.exr", &["--crop", "6,4,9,5", "--seed", "7"]);
+    make_file("beside.exr", &["--crop", "0,0,3,3"]);
+    make_file("small.exr", &["--set", "film.width=16"]);
+    let compare_files = |a: &str, b: &str| render(&folder, &["diff", a, b, "--png", "where.png"]);
+    let overlap = "in the 9 x 5 pixels at (6, 4) that both have";
     for (a, b) in [("whole.exr", "crop.exr"), ("crop.exr", "whole.exr"), ("wide.exr", "crop.exr")] {
-        let same = compared(a, b);
-        let told = format!("{a} and {b} agree {here}: all values are equal\n");
-        assert_eq!((same.code, same.stdout), (Some(0), told));
+        let same = compare_files(a, b);
+        let printed = format!("{a} and {b} agree {overlap}: all values are equal\n");
+        assert_eq!((same.code, same.stdout), (Some(0), printed));
     }
-    let noisy = compared("whole.exr", "other.exr");
-    assert!(noisy.code == Some(0) && noisy.stdout.starts_with(&format!("whole.exr and other.exr agree {here}\n")));
+    let noisy = compare_files("whole.exr", "other.exr");
+    assert!(noisy.code == Some(0) && noisy.stdout.starts_with(&format!("whole.exr and other.exr agree {overlap}\n")));
     assert!(noisy.stdout.contains("\nz "), "{}", noisy.stdout);
     assert_eq!(read_png(&folder.path_of("where.png")).pixels.len(), 45);
-    let wide = compared("wide.exr", "whole.exr");
+    let wide = compare_files("wide.exr", "whole.exr");
     assert!(wide.stdout.starts_with("wide.exr and whole.exr agree in the 32 x 24 pixels at (0, 0)"), "{}", wide.stdout);
     for (other, pixels) in
         [("beside.exr", "3 x 3 pixels at (0, 0) of 32 x 24"), ("small.exr", "16 x 24 pixels at (0, 0)")]
     {
-        let refused = compared("crop.exr", other);
+        let refused = compare_files("crop.exr", other);
         assert!(refused.code == Some(2) && refused.stderr.contains(pixels), "{}", refused.stderr);
     }
 }
@@ -428,7 +433,7 @@ fn what_cannot_be_compared_is_refused_with_an_exit_code_of_its_own() {
     let missing = "error: there is no image file A.exr\nhelp: did you mean a.exr?\n";
     render(&folder, &["diff", "a.exr", "A.exr"]).assert_refused(2, missing);
     assert_eq!(render(&folder, &["diff", "a.exr"]).code, Some(2));
-    assert_eq!(folder.listing(), ["a.exr", "b.exr"]);
+    assert_eq!(folder.file_names(), ["a.exr", "b.exr"]);
 }
 
 #[test]

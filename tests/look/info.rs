@@ -28,7 +28,7 @@ fn assert_says(lines: &[String], expected: &[&str]) {
 }
 
 #[test]
-fn a_render_says_its_overscan() {
+fn info_shows_the_overscan_of_a_render() {
     let folder = Folder::with("ball.toml", SCENE);
     assert_eq!(render(&folder, &["ball.toml", "--overscan", "4,2,6,5"]).code, Some(0));
     let expected = ["size 12 x 8 pixels", "overscan 22 x 15 pixels are stored, (-4, -2) to (17, 12)"];
@@ -36,7 +36,7 @@ fn a_render_says_its_overscan() {
 }
 
 #[test]
-fn a_render_says_size_crop_color_camera_origin_and_channels() {
+fn info_shows_size_crop_color_camera_origin_and_channels_of_a_render() {
     let folder = Folder::with("ball.toml", SCENE);
     let rate = ["--set", "film.metadata.frames_per_second=23.976"];
     assert_eq!(render(&folder, &[&["ball.toml", "--crop", "4,2,6,5"], &rate[..]].concat()).code, Some(0));
@@ -74,7 +74,7 @@ fn values_that_are_no_numbers_are_counted_and_left_out() {
 }
 
 #[test]
-fn overscan_and_parts_of_other_programs_are_told() {
+fn overscan_and_parts_of_other_programs_are_described() {
     let folder = Folder::new();
     let flat = |value: f32| vec![value; 12];
     let mut image = Exr::new([4, 3], Vec::new());
@@ -105,24 +105,27 @@ fn overscan_and_parts_of_other_programs_are_told() {
 
 /// The deep image was written by OpenEXR 3.5.3.
 #[test]
-fn of_a_file_whose_values_are_not_read_all_else_is_told() {
+fn of_a_file_whose_values_are_not_read_all_else_is_described() {
     let folder = Folder::new();
     folder.write("deep.exr", include_bytes!("deep.exr"));
     folder.write("chroma.exr", subsampled());
-    let told = lines(&folder, "deep.exr");
-    assert!(told[0].ends_with("; its values are not read: a deep image, which has many values per pixel"), "{told:?}");
-    assert_says(&told, &["size 8 x 4 pixels", "storage zips, ", "R R half - - -", "Z Z float - - -"]);
-    let told = lines(&folder, "chroma.exr");
+    let printed = lines(&folder, "deep.exr");
+    assert!(
+        printed[0].ends_with("; its values are not read: a deep image, which has many values per pixel"),
+        "{printed:?}"
+    );
+    assert_says(&printed, &["size 8 x 4 pixels", "storage zips, ", "R R half - - -", "Z Z float - - -"]);
+    let printed = lines(&folder, "chroma.exr");
     let why = "channel subsampling, by which several pixels share a value";
-    assert!(told[0].ends_with(&format!("; its values are not read: {why}")), "{told:?}");
-    assert_says(&told, &["size 4 x 2 pixels", "beauty B float - - - one value per 2 x 2 pixels"]);
+    assert!(printed[0].ends_with(&format!("; its values are not read: {why}")), "{printed:?}");
+    assert_says(&printed, &["size 4 x 2 pixels", "beauty B float - - - one value per 2 x 2 pixels"]);
     let refusal = "error: cannot read chroma.exr: OpenEXR images of this kind are not supported: ";
     let viewed = render(&folder, &["view", "chroma.exr"]);
     assert_eq!((viewed.code, viewed.stderr), (Some(1), format!("{refusal}{why}\n")));
 }
 
 #[test]
-fn a_file_that_cannot_be_read_is_told_in_one_line() {
+fn a_file_that_cannot_be_read_is_reported_in_one_line() {
     let folder = Folder::new();
     folder.write("ramp.exr", ramp().bytes());
     folder.write("text.exr", "no image");
@@ -144,11 +147,11 @@ fn a_file_that_cannot_be_read_is_told_in_one_line() {
     assert_eq!((answer.code, &*answer.stdout), (Some(1), ""));
     assert!(answer.stderr.starts_with("error: cannot read half.exr: it is not a complete OpenEXR image ("));
     assert_eq!(answer.stderr.lines().count(), 1, "{}", answer.stderr);
-    assert_eq!(folder.listing(), ["empty.exr", "half.exr", "ramp.exr", "text.exr"]);
+    assert_eq!(folder.file_names(), ["empty.exr", "half.exr", "ramp.exr", "text.exr"]);
 }
 
 #[test]
-fn a_file_that_is_no_openexr_image_is_told_what_it_is() {
+fn a_file_that_is_no_openexr_image_is_identified() {
     let folder = Folder::with("ball.toml", SCENE);
     folder.write("a.png", *b"\x89PNG\r\n\x1a\n");
     folder.write("a.jpg", *b"\xff\xd8\xff\xe0");

@@ -12,8 +12,8 @@ fn mattes(folder: &Folder) {
 
 /// Writes the pixels of [`mattes`], with a given coverage of the ball in the first rank of the second pixel.
 fn mattes_with(folder: &Folder, file: &str, covered: f32) {
-    let of = |name: &str| f32::from_bits(id(name));
-    let (ball, floor, other) = (of("ball"), of("floor.left"), of("another"));
+    let value_of = |name: &str| f32::from_bits(id(name));
+    let (ball, floor, other) = (value_of("ball"), value_of("floor.left"), value_of("another"));
     let channels = vec![
         ("CryptoObject00.r", vec![ball, ball, other, 0.0]),
         ("CryptoObject00.g", vec![1.0, covered, 1.0, 0.0]),
@@ -48,12 +48,12 @@ fn one_matte_is_the_coverage_of_its_name() {
 fn all_mattes_have_colors_of_their_own_by_their_coverage() {
     let folder = Folder::new();
     mattes(&folder);
-    let (shown, said) = pixels(&folder, &["CryptoObject"]);
-    assert_eq!((shown.len(), &*said), (4, ""));
+    let (shown, printed) = pixels(&folder, &["CryptoObject"]);
+    assert_eq!((shown.len(), &*printed), (4, ""));
     let linear = |pixel: [u8; 3]| {
         // IEC 61966-2-1.
-        let of = |x: f64| if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) };
-        pixel.map(|x| of(f64::from(x) / 255.0))
+        let value_of = |x: f64| if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) };
+        pixel.map(|x| value_of(f64::from(x) / 255.0))
     };
     let [ball, edge, other, nothing] = [0, 1, 2, 3].map(|at| linear(shown[at]));
     assert!(ball != other && nothing == [0.0; 3], "{shown:?}");
@@ -77,7 +77,7 @@ fn mattes_of_a_render_are_shown_by_the_names_of_its_objects() {
 }
 
 #[test]
-fn a_matte_that_there_is_not_is_refused_with_the_nearest_name() {
+fn an_unknown_matte_is_refused_with_the_nearest_name() {
     let folder = Folder::new();
     mattes(&folder);
     let view = |arguments: &[&str]| render(&folder, &[&["view", "a.exr", "--png", "b.png"], arguments].concat());
@@ -90,7 +90,7 @@ fn a_matte_that_there_is_not_is_refused_with_the_nearest_name() {
     assert!(misspelt.code == Some(2) && misspelt.stderr.starts_with(near), "{}", misspelt.stderr);
     let other = view(&["CryptoMaterial"]);
     assert!(other.stderr.starts_with("error: a.exr has no layer CryptoMaterial\n"), "{}", other.stderr);
-    assert_eq!(folder.listing(), ["a.exr"]);
+    assert_eq!(folder.file_names(), ["a.exr"]);
 }
 
 #[test]
@@ -109,16 +109,19 @@ fn mattes_are_compared_by_what_they_cover() {
     let worst = "worst pixel (1, 0): 0.5 and 0.25";
     // The numbers that stand for names are not colors. All layers that hold some of them are compared in the same way.
     for layer in ["CryptoObject", "CryptoObject00", "CryptoObject01", "CryptoObject.ball"] {
-        let (code, said, _) = diff(layer, &[]);
+        let (code, printed, _) = diff(layer, &[]);
         // 0.25^2 / (0.25^2 + 0.01), over four pixels.
-        assert!(code == Some(1) && said.contains("relMSE 0.21552") && said.ends_with(worst), "{layer}: {said}");
+        assert!(
+            code == Some(1) && printed.contains("relMSE 0.21552") && printed.ends_with(worst),
+            "{layer}: {printed}"
+        );
         assert_eq!(diff(layer, &["--tolerance", "0.216"]).0, Some(0));
     }
     let same = (Some(0), "a.exr and b.exr agree: all values are equal".to_owned(), String::new());
     assert_eq!(diff("CryptoObject.floor.left", &[]), same);
     let near = "error: a.exr has no bal in CryptoObject\nhelp: did you mean ball? it has ball, floor.left\n";
     assert_eq!(diff("CryptoObject.bal", &[]), (Some(2), String::new(), near.to_owned()));
-    let (code, _, said) = diff("CryptObject", &[]);
+    let (code, _, printed) = diff("CryptObject", &[]);
     let near = "error: a.exr has no layer CryptObject\nhelp: did you mean CryptoObject? it has ";
-    assert!(code == Some(2) && said.starts_with(near), "{said}");
+    assert!(code == Some(2) && printed.starts_with(near), "{printed}");
 }

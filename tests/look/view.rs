@@ -23,8 +23,8 @@ environment = { radiance = 1 }
 pub fn pixels(folder: &Folder, arguments: &[&str]) -> (Vec<[u8; 3]>, String) {
     let answer = render(folder, &[&["view", "a.exr", "--png", "look.png"], arguments].concat());
     assert_eq!((answer.code, &*answer.stdout), (Some(0), ""), "{}", answer.stderr);
-    let said = answer.stderr.strip_suffix("wrote look.png\n").expect("the last line").to_owned();
-    (read_png(&folder.path_of("look.png")).pixels, said)
+    let message = answer.stderr.strip_suffix("wrote look.png\n").expect("the last line").to_owned();
+    (read_png(&folder.path_of("look.png")).pixels, message)
 }
 
 /// Writes color, alpha, two normals, a position, a depth and an albedo of two pixels.
@@ -64,9 +64,9 @@ fn each_layer_is_shown_as_what_it_is() {
     assert_eq!(pixels(&folder, &["Z"]), (vec![[128; 3], [255; 3]], format!("Z: black is 3.0, white 3.0, {span}")));
     assert_eq!(pixels(&folder, &["A"]).0, [[255; 3], [0; 3]]);
     assert_eq!(pixels(&folder, &["albedo.R"]).0, [[255; 3], [0; 3]]);
-    let (shown, said) = pixels(&folder, &["P"]);
+    let (shown, message) = pixels(&folder, &["P"]);
     assert_eq!(shown, [[0, 0, 0], [255, 128, 0]]);
-    assert_eq!(said, format!("P.X: black is 5.0, white 7.0, {span}P.Y: black is 1.0, white 1.0, {span}"));
+    assert_eq!(message, format!("P.X: black is 5.0, white 7.0, {span}P.Y: black is 1.0, white 1.0, {span}"));
 }
 
 #[test]
@@ -80,13 +80,13 @@ fn a_band_of_a_spectrum_is_shown_by_its_wavelength_and_bands_are_not_taken_for_c
         band("S1.385,000000nm", [4.0, 5.0]),
     ];
     folder.write("a.exr", Exr::new([2, 1], spectra.to_vec()).bytes());
-    let said = |layer: &[&str]| pixels(&folder, layer).1;
+    let message = |layer: &[&str]| pixels(&folder, layer).1;
     for name in ["385nm", "383.1nm", "387,4 nm", "S0.385nm", "S0.386.5nm", "S0.385,000000nm"] {
-        let said = said(&[name]);
-        assert!(said.starts_with("S0.385,000000nm: black is 1.0, white 3.0"), "{name}: {said}");
+        let message = message(&[name]);
+        assert!(message.starts_with("S0.385,000000nm: black is 1.0, white 3.0"), "{name}: {message}");
     }
-    assert!(said(&["S1.385nm"]).starts_with("S1.385,000000nm: black is 4.0"));
-    assert!(said(&[]).starts_with("there are no R, G and B: showing S0.385,000000nm\n"));
+    assert!(message(&["S1.385nm"]).starts_with("S1.385,000000nm: black is 4.0"));
+    assert!(message(&[]).starts_with("there are no R, G and B: showing S0.385,000000nm\n"));
     let refused = |layer: &str| render(&folder, &["view", "a.exr", layer, "--png", "look.png"]);
     refused("S0")
         .assert_refused(2, "error: S0 holds the 3 bands of a spectrum\nhelp: name one by its wavelength: S0.385nm\n");
@@ -97,9 +97,9 @@ fn a_band_of_a_spectrum_is_shown_by_its_wavelength_and_bands_are_not_taken_for_c
 fn where_there_are_no_colors_the_first_layer_is_shown_and_named() {
     let folder = Folder::new();
     folder.write("a.exr", Exr::new([2, 1], vec![("Y", vec![1.0, 3.0])]).bytes());
-    let (shown, said) = pixels(&folder, &[]);
+    let (shown, message) = pixels(&folder, &[]);
     assert_eq!(shown, [[0; 3], [255; 3]]);
-    assert!(said.starts_with("there are no R, G and B: showing Y\nY: black is 1.0, white 3.0, "), "{said}");
+    assert!(message.starts_with("there are no R, G and B: showing Y\nY: black is 1.0, white 3.0, "), "{message}");
 }
 
 #[test]
@@ -107,9 +107,9 @@ fn a_gray_comes_before_its_alpha_and_small_letters_are_colors() {
     let folder = Folder::new();
     let path = folder.path_of("a.exr");
     Exr::new([2, 1], vec![("A", vec![1.0; 2]), ("Y", vec![1.0, 3.0])]).write(&path);
-    let (shown, said) = pixels(&folder, &[]);
+    let (shown, message) = pixels(&folder, &[]);
     assert_eq!(shown, [[0; 3], [255; 3]]);
-    assert!(said.starts_with("there are no R, G and B: showing Y\nY: black is 1.0, white 3.0, "), "{said}");
+    assert!(message.starts_with("there are no R, G and B: showing Y\nY: black is 1.0, white 3.0, "), "{message}");
     Exr::new([1, 1], vec![("b", vec![0.0]), ("g", vec![0.5]), ("r", vec![1.0])]).write(&path);
     assert_eq!(pixels(&folder, &[]), (vec![[255, 188, 0]], String::new()));
 }
@@ -146,17 +146,17 @@ fn colors_of_any_space_are_brought_to_rec709() {
     Exr { texts: text("lin_rec2020_scene"), ..green.clone() }.write(&path);
     assert_eq!(pixels(&folder, &[]), (vec![[0, 131, 0]], String::new()));
     Exr { texts: text("lin_other_scene"), ..green.clone() }.write(&path);
-    let said = "the color space \"lin_other_scene\" is not known: it is shown as linear Rec.709\n";
-    assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], said.to_owned()));
+    let message = "the color space \"lin_other_scene\" is not known: it is shown as linear Rec.709\n";
+    assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], message.to_owned()));
     Exr { texts: text("unknown"), ..green.clone() }.write(&path);
     assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], String::new()));
     Exr { texts: text("data"), ..green.clone() }.write(&path);
-    let said = "it says that it holds data, not colors: it is shown as linear Rec.709\n";
-    assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], said.to_owned()));
+    let message = "it says that it holds data, not colors: it is shown as linear Rec.709\n";
+    assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], message.to_owned()));
     let none = Chromaticities { green: Vec2(0.708, 0.292), ..rec2020 };
     Exr { chromaticities: Some(none), ..green }.write(&path);
-    let said = "its chromaticities define no color space: it is shown as linear Rec.709\n";
-    assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], said.to_owned()));
+    let message = "its chromaticities define no color space: it is shown as linear Rec.709\n";
+    assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], message.to_owned()));
 }
 
 #[test]
@@ -204,12 +204,12 @@ fn what_cannot_be_shown_is_refused_and_nothing_is_written() {
     std::fs::copy(folder.path_of("a.exr"), folder.path_of("a.png")).expect("files can be copied");
     let itself = "error: a.png is the image itself\nhelp: name another file\n";
     view(&["a.png", "--png", "a.png"]).assert_refused(2, itself);
-    assert_eq!(folder.listing(), ["a.exr", "a.png"]);
+    assert_eq!(folder.file_names(), ["a.exr", "a.png"]);
 }
 
 /// A sky of 2^9 or 2^-11 on a ball with reflectances of 0.7, 0.2 and 0.1.
 #[test]
-fn a_picture_of_which_nearly_all_is_white_or_black_is_told_with_the_exposure_that_shows_more() {
+fn for_a_picture_nearly_all_white_or_black_a_better_exposure_is_suggested() {
     for (radiance, what, stops) in [("512", "brighter than white", -11), ("0.00048828125", "too dark to be seen", 9)] {
         let folder = Folder::with("ball.toml", SCENE.replace("radiance = 1", &format!("radiance = {radiance}")));
         let warned = |arguments: &[&str]| {
@@ -220,8 +220,8 @@ fn a_picture_of_which_nearly_all_is_white_or_black_is_told_with_the_exposure_tha
         let flag = format!("--exposure {stops}");
         assert_eq!(warned(&[]), [format!("warning: nearly all of look.png is {what}: {flag} shows more")]);
         let again = format!("`render view a.exr --png look.png {flag}`");
-        let told = format!("warning: nearly all of look.png is {what}: {again} shows more");
-        assert_eq!(warned(&["--exr", "a.exr"]), [told]);
+        let warning = format!("warning: nearly all of look.png is {what}: {again} shows more");
+        assert_eq!(warned(&["--exr", "a.exr"]), [warning]);
         assert_eq!(warned(&["--exposure", &stops.to_string()]), [""; 0]);
         assert_eq!(pixels(&folder, &[]).1, format!("nearly all of it is {what}: {flag} shows more\n"));
         assert_eq!(pixels(&folder, &["--exposure", &stops.to_string()]).1, "");

@@ -7,7 +7,7 @@ use abbe::shape::{Mesh, Shape, Vertices, read_mesh};
 
 use crate::support::random::Random;
 use crate::support::run::Folder;
-use crate::support::scenes::{rendered, scene, scene_in};
+use crate::support::scenes::{render_text, scene, scene_in};
 
 /// A pyramid over a square, whose base is divided into two triangles. No coordinate is exact in 32 bits.
 pub const POINTS: [[f64; 3]; 5] =
@@ -56,7 +56,7 @@ fn ply_text() -> String {
 }
 
 /// Returns the bytes of a number in little-endian or big-endian order.
-fn ordered<const N: usize>(little: [u8; N], big: bool) -> Vec<u8> {
+fn in_byte_order<const N: usize>(little: [u8; N], big: bool) -> Vec<u8> {
     if big { little.into_iter().rev().collect() } else { little.to_vec() }
 }
 
@@ -66,15 +66,22 @@ fn ply_binary(big: bool, single: bool) -> Vec<u8> {
     let mut bytes = ply_header(format, number, corners).into_bytes();
     for point in POINTS {
         for x in point {
-            bytes.extend(if single { ordered((x as f32).to_le_bytes(), big) } else { ordered(x.to_le_bytes(), big) });
+            bytes.extend(if single {
+                in_byte_order((x as f32).to_le_bytes(), big)
+            } else {
+                in_byte_order(x.to_le_bytes(), big)
+            });
         }
         bytes.push(255);
     }
     for polygon in POLYGONS {
         bytes.push(polygon.len() as u8);
         for &corner in polygon {
-            let corner =
-                if single { ordered(corner.to_le_bytes(), big) } else { ordered((corner as u16).to_le_bytes(), big) };
+            let corner = if single {
+                in_byte_order(corner.to_le_bytes(), big)
+            } else {
+                in_byte_order((corner as u16).to_le_bytes(), big)
+            };
             bytes.extend(corner);
         }
     }
@@ -127,8 +134,8 @@ fn a_ply_in_lines_may_write_numbers_and_comments_in_any_way() {
     let header = header + "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
     let (_folder, path) = file("a.ply", header + "0 0 0 nan -nan NaN\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
     assert_eq!(read_mesh(&path, false).expect("its normals are not used").faces, [[0, 1, 2]]);
-    let told = read_mesh(&path, true).err();
-    assert_eq!(told.as_deref(), Some("the normal of vertex 0 (counted from 0) is not finite"));
+    let reported = read_mesh(&path, true).err();
+    assert_eq!(reported.as_deref(), Some("the normal of vertex 0 (counted from 0) is not finite"));
 }
 
 #[test]
@@ -143,7 +150,7 @@ fn strips_of_a_ply_are_cut_into_triangles() {
 }
 
 #[test]
-fn what_a_ply_cannot_say_with_its_faces_is_told() {
+fn invalid_faces_of_a_ply_are_reported() {
     let refusal = |from: &str, to: &str| {
         let (_folder, path) = file("a.ply", ply_text().replace(from, to));
         read_mesh(&path, false).err().unwrap_or_default()
@@ -160,8 +167,8 @@ fn what_a_ply_cannot_say_with_its_faces_is_told() {
     );
     let header = ply_header("binary_little_endian", "float", "int").replace("uchar int", "int int");
     let (_folder, path) = file("a.ply", [header.as_bytes(), &[0; 13 * 5], &[255; 4 * 4 * 5]].concat());
-    let told = read_mesh(&path, false).err();
-    assert_eq!(told.as_deref(), Some("its bytes do not fit a PLY file with this header"));
+    let reported = read_mesh(&path, false).err();
+    assert_eq!(reported.as_deref(), Some("its bytes do not fit a PLY file with this header"));
     for name in ["a.ply", "a.obj", "a.glb"] {
         let (_folder, path) = file(name, b"\x1f\x8b\x08\0\0\0\0\0");
         assert_eq!(read_mesh(&path, false).err().as_deref(), Some("it is compressed with gzip: unpack it first"));
@@ -293,17 +300,17 @@ fn faces_of_many_corners_that_a_scene_writes_are_cut_as_those_of_a_file() {
     let obj = CORNERS.map(|[x, y]| format!("v {x} {y} 0\n")).concat() + "f 1 2 3 4 5 6\n";
     let (_folder, path) = file("l.obj", &obj);
     let points = CORNERS.map(|[x, y]| [x, y, 0]);
-    let of = |mesh: &str| {
+    let mesh_and_pixels = |mesh: &str| {
         let text = format!(
             "camera = {{ position = [1, 1, 5], look_at = [1, 1, 0], vertical_fov = 40 }}\n\
              film = {{ width = 16, height = 16 }}\n[[object]]\nmaterial = \"stuff\"\nshape.mesh = {{ {mesh} }}\n\
              [material.stuff]\nemissive.radiance = 1\n"
         );
         let Shape::Mesh(mesh) = &*scene(&text).objects[0].shape else { panic!("{text}") };
-        (mesh.count(), rendered(&text).rgb())
+        (mesh.count(), render_text(&text).rgb())
     };
-    let (count, image) = of(&format!("points = {points:?}, faces = [[0, 1, 2, 3, 4, 5]]"));
-    assert!((count, &image) == (4, &of(&format!("file = {path:?}")).1), "{count} triangles");
+    let (count, image) = mesh_and_pixels(&format!("points = {points:?}, faces = [[0, 1, 2, 3, 4, 5]]"));
+    assert!((count, &image) == (4, &mesh_and_pixels(&format!("file = {path:?}")).1), "{count} triangles");
     // The face covers 3 of the visible area of (10 tan 20 degrees)^2.
     let share = image.iter().map(|rgb| f64::from(rgb[1])).sum::<f64>() / 256.0;
     assert!((share - 0.2264).abs() < 0.01, "{share}");
@@ -325,51 +332,51 @@ fn materials_of_an_obj_are_ignored_with_a_warning() {
     let body = POINTS.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat() + "f 1 4 3 2\nf 1 2 5\nf 2 3 5\n";
     let with_library = format!("mtllib absent.mtl\n{body}usemtl red\nf 3 4 5\nf 4 1 5\n");
     assert_eq!(read("a.obj", with_library.as_bytes()), (triangles(true), true));
-    let said = warnings("a.obj", with_library.as_bytes(), "mirror = {}");
-    assert_eq!(said, ["pyramid: the materials of a.obj are ignored; the scene defines them"]);
-    let said = warnings("a.obj", (with_library.clone() + "usemtl blue\nusemtl red\n").as_bytes(), "mirror = {}");
+    let warned = warnings("a.obj", with_library.as_bytes(), "mirror = {}");
+    assert_eq!(warned, ["pyramid: the materials of a.obj are ignored; the scene defines them"]);
+    let warned = warnings("a.obj", (with_library.clone() + "usemtl blue\nusemtl red\n").as_bytes(), "mirror = {}");
     let why = "the scene gives it one: save parts that look different as separate files";
-    assert_eq!(said, [format!("pyramid: the 2 materials of a.obj are ignored; {why}")]);
+    assert_eq!(warned, [format!("pyramid: the 2 materials of a.obj are ignored; {why}")]);
     let without_library = format!("{body}usemtl red\nf 3 4 5\nf 4 1 5\n");
     assert_eq!(read("a.obj", without_library.as_bytes()).0, triangles(true));
     assert!(warnings("a.obj", format!("{body}f 3 4 5\nf 4 1 5\n").as_bytes(), "mirror = {}").is_empty());
 }
 
 #[test]
-fn faces_without_texture_coordinates_are_warned_of_where_an_image_lies_on_them() {
+fn faces_without_texture_coordinates_below_an_image_cause_a_warning() {
     let places = POINTS.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat() + "vt 0.25 0.5\nvt 1 1\nvt 0 1\n";
     let some = places.clone() + "f 1/1 4/2 3/3 2/2\no sides\nf 1/1 2/2 5\nf 2 3 5\nf 3/1 4/2 5/3\nf 4/1 1/2 5/3\n";
-    let said = warnings("a.obj", some.as_bytes(), "diffuse.reflectance.checker = [0.2, 0.8]");
+    let warned = warnings("a.obj", some.as_bytes(), "diffuse.reflectance.checker = [0.2, 0.8]");
     let shown = "have no texture coordinates: they show the image where u and v are 0";
-    assert_eq!(said, [format!("pyramid: 2 triangles of a.obj {shown}")]);
+    assert_eq!(warned, [format!("pyramid: 2 triangles of a.obj {shown}")]);
     assert!(warnings("a.obj", some.as_bytes(), "diffuse.reflectance = 0.5").is_empty());
     let all = places + "f 1/1 4/2 3/3 2/2\nf 1/1 2/2 5/1\n";
     assert!(warnings("a.obj", all.as_bytes(), "diffuse.reflectance.checker = [0.2, 0.8]").is_empty());
 }
 
 #[test]
-fn a_dielectric_on_an_open_mesh_is_warned_of_and_on_a_closed_one_is_not() {
+fn a_dielectric_on_an_open_mesh_causes_a_warning_and_on_a_closed_one_none() {
     let closed =
         POINTS.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat() + "f 1 4 3 2\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
     let glass = "dielectric.index = 1.5";
     assert!(warnings("a.obj", closed.as_bytes(), glass).is_empty());
     let open = closed.replace("f 1 4 3 2\n", "");
-    let said = warnings("a.obj", open.as_bytes(), glass);
-    assert_eq!(said, ["pyramid: a dielectric on an open mesh: light may enter it and never leave"]);
+    let warned = warnings("a.obj", open.as_bytes(), glass);
+    assert_eq!(warned, ["pyramid: a dielectric on an open mesh: light may enter it and never leave"]);
     assert!(warnings("a.obj", open.as_bytes(), "mirror = {}").is_empty());
     let turned = closed.replace("f 1 2 5\n", "f 2 1 5\n");
     let reverse = "reverse the order of the corners, or recalculate the normals in the program that made it";
-    let said = warnings("a.obj", turned.as_bytes(), glass);
-    assert_eq!(said, [format!("pyramid: 1 triangle of this closed mesh is flipped: {reverse}")]);
+    let warned = warnings("a.obj", turned.as_bytes(), glass);
+    assert_eq!(warned, [format!("pyramid: 1 triangle of this closed mesh is flipped: {reverse}")]);
     let more = turned.replace("f 1 4 3 2\n", "f 1 2 3 4\n");
-    let said = warnings("a.obj", more.as_bytes(), glass);
-    assert_eq!(said, [format!("pyramid: 3 triangles of this closed mesh are flipped: {reverse}")]);
+    let warned = warnings("a.obj", more.as_bytes(), glass);
+    assert_eq!(warned, [format!("pyramid: 3 triangles of this closed mesh are flipped: {reverse}")]);
     let torn = turned.replace("f 3 4 5\n", "");
-    let said = warnings("a.obj", torn.as_bytes(), glass);
-    assert_eq!(said, ["pyramid: a dielectric on an open mesh: light may enter it and never leave"]);
+    let warned = warnings("a.obj", torn.as_bytes(), glass);
+    assert_eq!(warned, ["pyramid: a dielectric on an open mesh: light may enter it and never leave"]);
     let empty_face = format!("{closed}f 1 2 2\n");
-    let said = warnings("a.obj", empty_face.as_bytes(), glass);
-    assert_eq!(said, ["pyramid: 1 triangle without area was dropped"]);
+    let warned = warnings("a.obj", empty_face.as_bytes(), glass);
+    assert_eq!(warned, ["pyramid: 1 triangle without area was dropped"]);
 }
 
 /// A corner lies on the edge of another triangle, and a triangle without area lies between them.

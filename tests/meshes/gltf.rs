@@ -107,7 +107,7 @@ fn places_may_be_whole_numbers() {
 }
 
 #[test]
-fn texture_transforms_are_said_to_be_ignored() {
+fn texture_transforms_are_reported_as_ignored() {
     let coordinates = r#""POSITION":0,"TEXCOORD_0":2"#;
     let accessor = r#""type":"SCALAR"},{"bufferView":0,"componentType":5126,"count":5,"type":"VEC2"}"#;
     let text = document(&embedded(1), 1, "")
@@ -180,7 +180,7 @@ fn sparse_entries_without_a_view_replace_zeros() {
 }
 
 #[test]
-fn copies_that_only_an_extension_tells_of_are_said_to_be_ignored() {
+fn copies_by_an_extension_are_reported_as_ignored() {
     let used = r#""scene":0,"extensionsUsed":["KHR_materials_ior","EXT_mesh_gpu_instancing"]"#;
     let text = document(&embedded(1), 1, "");
     let (_folder, path) = file("a.gltf", text.replace(r#""scene":0"#, used));

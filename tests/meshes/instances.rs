@@ -5,7 +5,7 @@ use std::sync::Arc;
 use abbe::shape::{Mesh, Shape};
 
 use crate::support::bodies::ball;
-use crate::support::scenes::{Mean, SPLITTING, environment, image_in, refusal_in, scene_in, view};
+use crate::support::scenes::{Mean, SPLITTING, environment, first_mistake, render_film_in, scene_in, view};
 
 /// Creates a folder with `ball.obj`, a ball of radius 1, and `same.obj`, which is not shared.
 fn folder() -> tempfile::TempDir {
@@ -75,16 +75,16 @@ fn objects_of_one_mesh_file_share_it_in_memory() {
 }
 
 /// Compares the mean colors of a scene's images with a shared mesh and with baked ones.
-fn compared(text: impl Fn(&str) -> String, what: &str) {
+fn compare_means(text: impl Fn(&str) -> String, what: &str) {
     let folder = folder();
     let means = [("ball.obj", 3), ("same.obj", 4)].map(|(file, seed)| {
-        let (film, report) = image_in(folder.path(), &text(file).replace("SEED", &seed.to_string()), SPLITTING);
+        let (film, report) = render_film_in(folder.path(), &text(file).replace("SEED", &seed.to_string()), SPLITTING);
         assert_eq!((report.non_finite, report.unmatched), (0, 0));
         Mean::of(&film)
     });
     for band in 0..3 {
         let off = means[0].value[band] - means[1].value[band];
-        let error = means[0].beside(&means[1]).error[band];
+        let error = means[0].with_joint_error(&means[1]).error[band];
         assert!(means[1].value[band] > 0.01 && off.abs() <= 3.5 * error, "{what}: {off} with an error of {error}");
     }
 }
@@ -92,7 +92,7 @@ fn compared(text: impl Fn(&str) -> String, what: &str) {
 #[test]
 fn a_shared_mesh_shines_as_a_baked_one_does() {
     // A floor under a lamp: every pixel sees the same point, by next-event estimation and by random hits.
-    compared(
+    compare_means(
         |file| {
             let elsewhere = object("ball.obj", "black", "{ translate = [0, -50, 0] }");
             let lamp = "{ scale = [0.7, 0.3, -0.5] }, { rotate = { axis = [1, 2, 0], degrees = 40 } }, { translate = [0.3, 1, 0] }";
@@ -117,10 +117,10 @@ fn nested_glass_of_instances_loses_no_light() {
         + &glass("{ scale = [1.1, 0.8, -1] }, { rotate = { axis = [1, 2, 0], degrees = 40 } }")
         + &object("ball.obj", "water", "{ scale = [0.7, 0.5, 0.6] }, { rotate = { axis = [1, 2, 0], degrees = 40 } }")
         + &object("ball.obj", "flint", "{ scale = 0.4 }, { translate = [0.4, 0.1, 0.2] }");
-    let (film, report) = image_in(folder().path(), &text, SPLITTING);
+    let (film, report) = render_film_in(folder().path(), &text, SPLITTING);
     assert_eq!((report.non_finite, report.unmatched), (0, 0));
     let mean = Mean::of(&film);
-    assert!(mean.worst_error([1.0; 3]) <= 1e-3, "{mean:?}");
+    assert!(mean.worst_relative_error([1.0; 3]) <= 1e-3, "{mean:?}");
     mean.assert_near([1.0; 3], 3, "nested glass");
 }
 
@@ -131,6 +131,6 @@ fn instances_that_touch_are_refused_by_their_names() {
         + "[material]\nglass.dielectric.index = 1.5\n"
         + &object("ball.obj", "glass", "{ scale = 0.5 }").replace("[[object]]", "[[object]]\nname = \"bead\"")
         + "instances = [[], [{ translate = [3, 0, 0] }], [{ translate = [3, 0, 0] }]]\n";
-    let error = refusal_in(folder().path(), &text).message;
+    let error = first_mistake(folder().path(), &text).message;
     assert!(error.contains("bead [2] and bead [3] partly coincide"), "{error}");
 }

@@ -61,12 +61,12 @@ fn the_tree_of_a_scene_finds_what_a_search_finds() {
     let floor = "[[object]]\nshape.plane = { point = [0, -3, 0], normal = [0, 1, 0] }\nmaterial = \"m\"\n";
     let text = view([0.0, 0.0, 9.0], [0.0; 3], 40.0, 4) + "[material.m]\nmirror = {}\n" + &objects + floor;
     let scene = scene(&text);
-    let met = (0..RAYS).filter(|_| assert_found(&scene, &ray(&mut random, 6.0))).count();
-    assert!(met as u32 > RAYS / 2, "only {met} rays meet anything");
+    let hits = (0..RAYS).filter(|_| assert_found(&scene, &ray(&mut random, 6.0))).count();
+    assert!(hits as u32 > RAYS / 2, "only {hits} rays meet anything");
 }
 
 #[test]
-fn of_objects_in_one_place_the_first_is_met() {
+fn of_coincident_objects_the_first_is_hit() {
     // Walls of overlapping parallelograms and discs, with several in each place. Their bounding boxes are flat.
     let mut random = Random::new(22);
     let mut shapes = Vec::new();
@@ -117,8 +117,8 @@ fn the_tree_of_a_mesh_finds_what_a_search_finds() {
     for i in (1..faces.len()).rev() {
         faces.swap(i, (random.number() * (i + 1) as f64) as usize);
     }
-    let met = assert_mesh_finds(&points, &faces, RAYS / 4, 3.0, &mut random);
-    assert!(met > RAYS / 8, "only {met} rays meet anything");
+    let hits = assert_mesh_finds(&points, &faces, RAYS / 4, 3.0, &mut random);
+    assert!(hits > RAYS / 8, "only {hits} rays meet anything");
 }
 
 #[test]
@@ -136,8 +136,8 @@ fn boxes_that_begin_at_a_hit_hide_no_equally_near_triangle() {
         points.extend(corners);
         faces.push([first, first + 1, first + 2]);
     }
-    let met = assert_mesh_finds(&points, &faces, RAYS / 2, 5.0, &mut random);
-    assert!(met > RAYS / 8, "only {met} rays meet anything");
+    let hits = assert_mesh_finds(&points, &faces, RAYS / 2, 5.0, &mut random);
+    assert!(hits > RAYS / 8, "only {hits} rays meet anything");
 }
 
 /// Asserts that the tree finds what a search finds. Returns how many rays hit anything.
@@ -146,14 +146,14 @@ fn assert_mesh_finds(points: &[DVec3], faces: &[[u32; 3]], rays: u32, half: f64,
     let triangles: Vec<Shape> = faces.iter().map(triangle).collect();
     let mesh = Mesh::new(Vertices::Double(points.to_vec()), faces.to_vec()).expect("faces with area");
     let mesh = Shape::Mesh(mesh.into());
-    let mut met = 0;
+    let mut hits = 0;
     for _ in 0..rays {
         let ray = ray(random, half);
         let all = triangles.iter().enumerate();
         let all = all.map(|(number, triangle)| (number as u32, triangle.intersect(&ray, f64::INFINITY)));
         let nearest = search(all).map(|(part, intersection)| Intersection { part, ..intersection });
         assert_eq!(mesh.intersect(&ray, f64::INFINITY), nearest, "{ray:?}");
-        met += u32::from(nearest.is_some());
+        hits += u32::from(nearest.is_some());
     }
-    met
+    hits
 }

@@ -36,7 +36,7 @@ fn village() -> String {
 fn rays_find_in_a_shared_tree_what_they_find_object_by_object() {
     let scene = scene(&village());
     let mut random = Random::new(31);
-    let (mut met, mut ties) = (0, 0);
+    let (mut hits, mut ties) = (0, 0);
     for i in 0..40_000 {
         // Every other ray starts on whole and half numbers and aims at them, through edges and corners.
         let mut place = || {
@@ -55,7 +55,7 @@ fn rays_find_in_a_shared_tree_what_they_find_object_by_object() {
             intersections().min_by(|a, b| a.intersection.t.total_cmp(&b.intersection.t).then(a.object.cmp(&b.object)));
         assert_eq!(scene.intersect(&ray), nearest, "{ray:?}");
         let Some(hit) = nearest else { continue };
-        met += 1;
+        hits += 1;
         ties += usize::from(intersections().filter(|other| other.intersection.t == hit.intersection.t).count() > 1);
         // A light at the distance of a crossing, which is an object of the scene or none.
         let distance = if i % 3 == 0 { hit.intersection.t } else { random.between(0.0, 5.0) };
@@ -73,7 +73,7 @@ fn rays_find_in_a_shared_tree_what_they_find_object_by_object() {
             );
         }
     }
-    assert!(met > 20_000 && ties > 1000, "{met} rays meet something, {ties} two things at once");
+    assert!(hits > 20_000 && ties > 1000, "{hits} rays meet something, {ties} two things at once");
 }
 
 /// Returns a village of blocks. If `large`, the blocks have too many triangles for the shared tree, and each has a tree
@@ -101,12 +101,12 @@ fn the_triangle_of_a_lamp_is_occluded_by_others_of_the_lamp_and_by_what_stands_b
             let ray = Ray { origin, direction };
             let lamp = [0, 1, 4, 5][i % 4];
             let shape = &scene.objects[lamp].shape;
-            let own = shape.intersect(&ray, f64::INFINITY);
+            let own_hit = shape.intersect(&ray, f64::INFINITY);
             for part in 0..12 {
                 let Some(intersection) = shape.intersect_triangle(&ray, part) else { continue };
                 let ends = RayEnds { left: None, light: Some(lamp as u32), part: Some(part) };
                 let whole = scene.is_occluded(&ray, intersection.t, Some(lamp as u32), &Cell::new(None));
-                let expected = whole || own != Some(intersection);
+                let expected = whole || own_hit != Some(intersection);
                 assert_eq!(
                     scene.is_occluded(&ray, intersection.t, ends, &Cell::new(None)),
                     expected,

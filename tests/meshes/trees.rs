@@ -82,14 +82,14 @@ fn some_crossing_is_found_just_where_there_is_a_nearest_one() {
     let mut random = Random::new(33);
     let (points, faces) = ball(DVec3::ZERO, 1.0);
     let mesh = mesh(&points, &faces);
-    let mut met = 0;
+    let mut hits = 0;
     for _ in 0..100_000 {
         let from = random.direction() * 3.0;
         let to = random.direction() * random.between(0.0, 1.5);
         let ray = Ray::new(from, to - from);
         match mesh.intersect(&ray, f64::INFINITY) {
             Some(intersection) => {
-                met += 1;
+                hits += 1;
                 assert!(
                     mesh.is_crossed(&ray, f64::INFINITY, None) && mesh.is_crossed(&ray, intersection.t, None),
                     "{ray:?}"
@@ -99,5 +99,5 @@ fn some_crossing_is_found_just_where_there_is_a_nearest_one() {
             None => assert!(!mesh.is_crossed(&ray, f64::INFINITY, None), "{ray:?}"),
         }
     }
-    assert!((30_000..90_000).contains(&met), "{met} rays meet the ball");
+    assert!((30_000..90_000).contains(&hits), "{hits} rays meet the ball");
 }

@@ -26,10 +26,10 @@ fn assert_as_measured(rooms: Vec<Room>) {
     let mut wrong = Vec::new();
     for Room { name, text, asks, words } in rooms {
         let plan = plan(&scene(&text));
-        let said = plan.because.iter().filter(|line| line.contains("caustic") || line.contains("photon tracing"));
-        let said: Vec<&str> = said.map(String::as_str).collect();
-        println!("{name}: {}", said.join("; "));
-        if plan.method.light_pass.is_some() != asks || !said.iter().any(|line| line.contains(words)) {
+        let lines = plan.because.iter().filter(|line| line.contains("caustic") || line.contains("photon tracing"));
+        let lines: Vec<&str> = lines.map(String::as_str).collect();
+        println!("{name}: {}", lines.join("; "));
+        if plan.method.light_pass.is_some() != asks || !lines.iter().any(|line| line.contains(words)) {
             wrong.push(format!("{name}: wants {words:?}, says {:?}", plan.because));
         }
     }
@@ -73,13 +73,13 @@ fn an_error_of_the_whole_image_counts_beside_that_of_its_pixels() {
 fn the_plan_asks_for_the_same_photons_every_time_and_on_any_number_of_threads() {
     for room in rooms().into_iter().filter(|room| room.asks).step_by(4) {
         let scene = scene(&room.text);
-        let on = |threads| {
+        let plan_on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
             pool.install(|| plan(&scene)).method.light_pass
         };
-        let first = on(1);
+        let first = plan_on(1);
         assert!(first.is_some(), "{}", room.name);
-        assert!(first == on(3), "{}", room.name);
+        assert!(first == plan_on(3), "{}", room.name);
     }
 }
 
@@ -167,7 +167,7 @@ fn photons_are_sent_to_clear_coats() {
             + &body("ball", material, &["sphere = { center = [0, 1, 0], radius = 0.8 }"])
             + light
     };
-    let said = |material: &str, light: &str| {
+    let lines = |material: &str, light: &str| {
         let Plan { because, method, left_out, .. } = plan(&scene(&text(material, light)));
         assert!(left_out.iter().all(|line| !line.contains("point lights")) || method.light_pass.is_none());
         because.into_iter().find(|line| line.starts_with("photon tracing:") || line.starts_with("no ")).expect("a line")
@@ -176,17 +176,17 @@ fn photons_are_sent_to_clear_coats() {
         ["sun = { toward = [1, 2, 1], irradiance = 3 }", "point = { position = [1, 5, 1], intensity = 9 }"]
             .map(|light| format!("[[light]]\n{light}\n"));
     let coat = "plastic = { reflectance = 0.5 }";
-    assert!(said(coat, &sun).contains("photons from the sun (solid angle 6.8e-5 sr) toward object 2"));
-    assert!(said(coat, &point).contains("photons from a point light toward object 2"));
+    assert!(lines(coat, &sun).contains("photons from the sun (solid angle 6.8e-5 sr) toward object 2"));
+    assert!(lines(coat, &point).contains("photons from a point light toward object 2"));
     for nearly in
         ["plastic = { reflectance = 0.5, roughness = 0.2 }", "conductor = { metal = \"Al\", roughness = 0.3 }"]
     {
         assert!(
-            said(nearly, &sun).contains("photons from the sun (solid angle 6.8e-5 sr) toward object 2"),
+            lines(nearly, &sun).contains("photons from the sun (solid angle 6.8e-5 sr) toward object 2"),
             "{nearly}"
         );
     }
-    assert!(said("plastic = { reflectance = 0.5, roughness = 0.4 }", &sun).starts_with("no caustics: no surface is"));
+    assert!(lines("plastic = { reflectance = 0.5, roughness = 0.4 }", &sun).starts_with("no caustics: no surface is"));
     // A body inside a box throws no visible caustic.
     let hidden = body("box", "diffuse = { reflectance = 0.5 }", &["cube = { center = [0, 2, 60], size = 3 }"])
         + &body("hidden", coat, &["sphere = { center = [0, 2, 60], radius = 0.8 }"]);
@@ -205,5 +205,5 @@ fn photons_are_sent_to_clear_coats() {
     assert!(left_out.iter().all(|line| !line.contains("sheet")), "{left_out:?}");
     let window =
         body("lamp", "emissive = { radiance = 2 }", &["quad = { center = [0, 5, 0], u = [4, 0, 0], v = [0, 0, 4] }"]);
-    assert!(said(coat, &window).contains("no photon tracing: rays hit "));
+    assert!(lines(coat, &window).contains("no photon tracing: rays hit "));
 }

@@ -28,7 +28,7 @@ enum Link {
 }
 
 impl Link {
-    fn goes_through(&self) -> bool {
+    fn transmits(&self) -> bool {
         matches!(self, Self::Filter(_) | Self::Through(_))
     }
 
@@ -50,23 +50,23 @@ impl Link {
 }
 
 /// A link, the direction in which the camera's ray arrives, and the unit normal on that side.
-struct Met {
+struct Hit {
     link: Link,
-    coming: DVec3,
+    incoming: DVec3,
     normal: DVec3,
 }
 
-impl Met {
-    fn going(&self) -> DVec3 {
-        if self.link.goes_through() {
-            self.coming
+impl Hit {
+    fn outgoing(&self) -> DVec3 {
+        if self.link.transmits() {
+            self.incoming
         } else {
-            self.coming - self.normal * (2.0 * self.coming.dot(self.normal))
+            self.incoming - self.normal * (2.0 * self.incoming.dot(self.normal))
         }
     }
 
     fn cos(&self) -> f64 {
-        -self.coming.dot(self.normal)
+        -self.incoming.dot(self.normal)
     }
 }
 
@@ -74,31 +74,31 @@ const STEP: f64 = 4.0;
 
 /// Returns a chain of links and its scene. The links are hit at angles of up to `steepest` degrees, all in one plane or
 /// turned at random.
-fn chain(random: &mut Random, links: &[Link], steepest: f64, in_plane: bool) -> (Vec<Met>, String) {
+fn chain(random: &mut Random, links: &[Link], steepest: f64, in_plane: bool) -> (Vec<Hit>, String) {
     loop {
-        let (mut at, mut coming) = (DVec3::ZERO, DVec3::new(0.0, 0.0, -1.0));
-        let (mut places, mut met) = (vec![at - coming * STEP], Vec::new());
+        let (mut at, mut incoming) = (DVec3::ZERO, DVec3::new(0.0, 0.0, -1.0));
+        let (mut places, mut hit) = (vec![at - incoming * STEP], Vec::new());
         for link in links {
             let around =
-                if in_plane { DVec3::new(0.0, 1.0, 0.0).cross(coming) } else { random.direction().cross(coming) };
+                if in_plane { DVec3::new(0.0, 1.0, 0.0).cross(incoming) } else { random.direction().cross(incoming) };
             let aside = around.try_normalize().unwrap_or(DVec3::new(1.0, 0.0, 0.0));
             let (sin, cos) = random.between(0.0, steepest).to_radians().sin_cos();
-            let next = Met { link: link.clone(), coming, normal: aside * sin - coming * cos };
+            let next = Hit { link: link.clone(), incoming, normal: aside * sin - incoming * cos };
             places.push(at);
-            coming = next.going();
-            at += coming * STEP;
-            met.push(next);
+            incoming = next.outgoing();
+            at += incoming * STEP;
+            hit.push(next);
         }
         places.push(at);
-        if is_free(&places) {
-            let text = text(&met, &places);
-            return (met, text);
+        if is_unblocked(&places) {
+            let text = text(&hit, &places);
+            return (hit, text);
         }
     }
 }
 
 /// Returns whether nothing blocks the path between two links.
-fn is_free(places: &[DVec3]) -> bool {
+fn is_unblocked(places: &[DVec3]) -> bool {
     let distance = |point: DVec3, a: DVec3, b: DVec3| {
         let along = ((point - a).dot(b - a) / (b - a).dot(b - a)).clamp(0.0, 1.0);
         (a + (b - a) * along - point).length()
@@ -109,12 +109,12 @@ fn is_free(places: &[DVec3]) -> bool {
     })
 }
 
-fn text(met: &[Met], places: &[DVec3]) -> String {
+fn text(hit: &[Hit], places: &[DVec3]) -> String {
     let mut text = view(places[0].into(), [0.0; 3], 0.05, 4) + "filter = \"center\"\n";
-    for (number, (met, place)) in met.iter().zip(&places[1..]).enumerate() {
-        let u = met.normal.cross(DVec3::new(0.3, 0.5, 0.81)).try_normalize().expect("not along it");
-        let (u, v) = (u * 0.5, met.normal.cross(u) * 0.5);
-        text += &body(&format!("m{number}"), &met.link.material(), &[&quad(*place, u, v)]);
+    for (number, (hit, place)) in hit.iter().zip(&places[1..]).enumerate() {
+        let u = hit.normal.cross(DVec3::new(0.3, 0.5, 0.81)).try_normalize().expect("not along it");
+        let (u, v) = (u * 0.5, hit.normal.cross(u) * 0.5);
+        text += &body(&format!("m{number}"), &hit.link.material(), &[&quad(*place, u, v)]);
     }
     let lamp = places[places.len() - 1].to_array();
     text + &object("lamp", &format!("sphere = {{ center = {lamp:?}, radius = 0.03 }}"))
@@ -129,15 +129,15 @@ fn tint(random: &mut Random) -> Vec<f64> {
     let sign = if random.number() < 0.5 { 1.0 } else { -1.0 };
     let (low, high) = (random.between(0.01, 0.3), random.between(0.6, 0.95));
     let is_paint = random.number() < 0.5;
-    let of = |nm: f64| match is_paint {
+    let share_at = |nm: f64| match is_paint {
         true => (0.1 + patch.at(nm)).min(1.0),
         false => low + (high - low) / (1.0 + libm::exp(-sign * (nm - edge) / width)),
     };
-    visible::wavelengths().map(of).collect()
+    visible::wavelengths().map(share_at).collect()
 }
 
 /// Returns the light that is left after a chain, in steps of 1 nm or in the lanes of a basis.
-fn left(met: &[Met], scene: &Scene<Curve>, basis: Option<&Basis>) -> Vec<f64> {
+fn remaining_light(hit: &[Hit], scene: &Scene<Curve>, basis: Option<&Basis>) -> Vec<f64> {
     use abbe::material::{Material, Thin, conductor_reflectance};
     let read = |rgb: &Basis, quantity: Quantity, curve: &Curve| match basis {
         Some(basis) => basis.tabulate(quantity, curve).bins().to_vec(),
@@ -145,9 +145,9 @@ fn left(met: &[Met], scene: &Scene<Curve>, basis: Option<&Basis>) -> Vec<f64> {
     };
     let rgb = Basis::rgb(scene.film.color_space);
     let read = |quantity, curve: &Curve| read(&rgb, quantity, curve);
-    let mut left = Vec::new();
-    for (number, met) in met.iter().enumerate() {
-        let cos = met.cos();
+    let mut remaining_light = Vec::new();
+    for (number, hit) in hit.iter().enumerate() {
+        let cos = hit.cos();
         let values: Vec<f64> =
             match &scene.materials.iter().find(|m| m.name == format!("m{number}")).expect("named so").material {
                 Material::Mirror(mirror) => read(Quantity::Reflectance, &mirror.reflectance),
@@ -161,12 +161,12 @@ fn left(met: &[Met], scene: &Scene<Curve>, basis: Option<&Basis>) -> Vec<f64> {
                 Material::Thin(Thin::Pane { transmittance, .. }) => read(Quantity::Transmittance, transmittance),
                 _ => unreachable!("no other links have colors"),
             };
-        if left.is_empty() {
-            left = vec![1.0; values.len()];
+        if remaining_light.is_empty() {
+            remaining_light = vec![1.0; values.len()];
         }
-        left.iter_mut().zip(values).for_each(|(left, value)| *left *= value);
+        remaining_light.iter_mut().zip(values).for_each(|(remaining_light, value)| *remaining_light *= value);
     }
-    left
+    remaining_light
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn colors_through_chains_of_filters_mirrors_and_metals_are_missed_by_no_more_tha
                 _ => Link::Metal(["Au", "Cu", "Ag", "Al"][(random.number() * 4.0) as usize]),
             })
             .collect();
-        let (met, mut text) = chain(&mut random, &links, 60.0, false);
+        let (hit, mut text) = chain(&mut random, &links, 60.0, false);
         let light = lights[number as usize % lights.len()];
         text += &format!("[material.lamp]\nemissive = {{ radiance = {{ illuminant = \"{light}\" }} }}\n");
         let scene = scene(&text);
@@ -193,23 +193,23 @@ fn colors_through_chains_of_filters_mirrors_and_metals_are_missed_by_no_more_tha
             let basis = &candidate.basis;
             let emission = Emission::new(curve, basis.color_space());
             let mut exact = [0.0; 3];
-            for (value, column) in left(&met, &scene, None).iter().zip(emission.columns()) {
+            for (value, column) in remaining_light(&hit, &scene, None).iter().zip(emission.columns()) {
                 (0..3).for_each(|c| exact[c] += value * column[c]);
             }
             let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
-            let lanes = left(&met, &scene, Some(basis));
+            let lanes = remaining_light(&hit, &scene, Some(basis));
             let lanes = Lanes::from_fn(|lane| lanes.get(lane).map_or(0.0, |x| *x as f32));
-            let shone = draw.read(&basis.tabulate(Quantity::Emission, curve));
-            let found = basis.response(curve).sensor(&draw, shone * lanes, false);
+            let emitted = draw.read(&basis.tabulate(Quantity::Emission, curve));
+            let found = basis.response(curve).film_rgb(&draw, emitted * lanes, false);
             let strongest = exact.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
-            let missed = (0..3).fold(0.0_f64, |most, c| larger(most, (found[c] - exact[c]).abs())) / strongest;
+            let color_error = (0..3).fold(0.0_f64, |most, c| larger(most, (found[c] - exact[c]).abs())) / strongest;
             let name = basis.name();
             assert!(
-                missed <= candidate.bound() + 1e-6,
-                "scene {number}, {count} links under {light}, {name}: misses {missed:.5}, stated {:.5}",
+                color_error <= candidate.bound() + 1e-6,
+                "scene {number}, {count} links under {light}, {name}: misses {color_error:.5}, stated {:.5}",
                 candidate.bound()
             );
-            ratios.push(candidate.bound() / missed.max(1e-6));
+            ratios.push(candidate.bound() / color_error.max(1e-6));
         }
     }
     ratios.sort_by(f64::total_cmp);
@@ -218,11 +218,11 @@ fn colors_through_chains_of_filters_mirrors_and_metals_are_missed_by_no_more_tha
 }
 
 /// Returns the light of a chain by Mueller calculus, relative to the light without polarization.
-fn exact_over_averaged(met: &[Met]) -> f64 {
+fn exact_over_averaged(hit: &[Hit]) -> f64 {
     let (mut light, mut averaged) = (Stokes::unpolarized(), 1.0);
-    for met in met.iter().rev() {
-        let cos = met.cos();
-        let event = match met.link {
+    for hit in hit.iter().rev() {
+        let cos = hit.cos();
+        let event = match hit.link {
             Link::Through(n) => pane(n, cos)[0],
             Link::MirroredByPane(n) => pane(n, cos)[1],
             Link::MirroredByGlass(n) => surface(n, cos),
@@ -230,18 +230,19 @@ fn exact_over_averaged(met: &[Met]) -> f64 {
             _ => mirror(),
         };
         averaged *= event.mean();
-        light = light.after(&event, -met.going(), met.normal);
+        light = light.after(&event, -hit.outgoing(), hit.normal);
     }
     light.intensity() / averaged
 }
 
 /// Returns the stated error of averaging, the light with traced polarization relative to the light with averaging, and
 /// the reasons of the plan.
-fn rendered(text: &str) -> (f64, f64, Vec<String>) {
+fn render_chain(text: &str) -> (f64, f64, Vec<String>) {
     let scene = scene(&format!("{text}[material.lamp]\nemissive = {{ radiance = 1 }}\n"));
     let plan = plan(&scene);
-    let by = |polarization| render(&prepare(&scene, Method { polarization, ..plan.method.clone() }), &|_| ()).1;
-    let [averaged, traced] = [Polarizing::Averaged, Polarizing::Traced].map(by);
+    let render_with =
+        |polarization| render(&prepare(&scene, Method { polarization, ..plan.method.clone() }), &|_| ()).1;
+    let [averaged, traced] = [Polarizing::Averaged, Polarizing::Traced].map(render_with);
     assert!(averaged.light > 0.0, "no light in\n{text}");
     (averaged.polarization, traced.light / averaged.light, plan.because)
 }
@@ -262,13 +263,13 @@ fn polarization_changes_the_light_of_chains_by_no_more_than_the_report_says() {
                 _ => Link::IdealMirror,
             })
             .collect();
-        let (met, text) = chain(&mut random, &links, 80.0, number % 2 == 0);
-        let exact = exact_over_averaged(&met);
+        let (hit, text) = chain(&mut random, &links, 80.0, number % 2 == 0);
+        let exact = exact_over_averaged(&hit);
         let change = (exact - 1.0).abs();
-        let (stated, traced, because) = rendered(&text);
+        let (stated, traced, because) = render_chain(&text);
         assert!((traced - exact).abs() < 1e-5 * exact.max(1.0), "scene {number}: {traced} for {exact}");
         // Lanes are f32.
-        let links: Vec<String> = met.iter().map(|met| format!("{} at {:.3}", met.link.material(), met.cos())).collect();
+        let links: Vec<String> = hit.iter().map(|hit| format!("{} at {:.3}", hit.link.material(), hit.cos())).collect();
         assert!(change <= stated + 1e-5, "scene {number}: changes {change:.6}, stated {stated:.6}: {links:?}");
         let says =
             because.iter().any(|line| line.starts_with("polarization on") || line.starts_with("polarization off"));
@@ -286,27 +287,27 @@ fn polarization_changes_the_light_of_chains_by_no_more_than_the_report_says() {
 
 #[test]
 fn a_mirror_between_two_reflections_at_brewsters_angle_hides_nothing() {
-    let met = |link: Link, coming: DVec3, degrees: f64| {
-        let aside = DVec3::new(0.0, 1.0, 0.0).cross(coming).try_normalize().expect("not upright");
+    let hit = |link: Link, incoming: DVec3, degrees: f64| {
+        let aside = DVec3::new(0.0, 1.0, 0.0).cross(incoming).try_normalize().expect("not upright");
         let (sin, cos) = degrees.to_radians().sin_cos();
-        Met { link, coming, normal: aside * sin - coming * cos }
+        Hit { link, incoming, normal: aside * sin - incoming * cos }
     };
     let brewster = 1.5_f64.atan().to_degrees();
-    let (mut at, mut coming, mut all) = (DVec3::ZERO, DVec3::new(0.0, 0.0, -1.0), Vec::new());
-    let mut places = vec![at - coming * STEP];
+    let (mut at, mut incoming, mut all) = (DVec3::ZERO, DVec3::new(0.0, 0.0, -1.0), Vec::new());
+    let mut places = vec![at - incoming * STEP];
     for (link, degrees) in
         [(Link::MirroredByGlass(1.5), brewster), (Link::IdealMirror, -40.0), (Link::MirroredByGlass(1.5), brewster)]
     {
-        let next = met(link, coming, degrees);
+        let next = hit(link, incoming, degrees);
         places.push(at);
-        coming = next.going();
-        at += coming * STEP;
+        incoming = next.outgoing();
+        at += incoming * STEP;
         all.push(next);
     }
     places.push(at);
     let change = exact_over_averaged(&all) - 1.0;
     assert!((change - 1.0).abs() < 1e-9, "twice the light, not {change} more");
-    let (stated, traced, because) = rendered(&text(&all, &places));
+    let (stated, traced, because) = render_chain(&text(&all, &places));
     assert!((traced - 2.0).abs() < 1e-5, "{traced}");
     assert!((stated - 1.0).abs() < 1e-5, "{stated}");
     assert!(

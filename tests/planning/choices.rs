@@ -69,10 +69,10 @@ fn dispersion_too_small_to_be_seen_is_not_modelled() {
 /// Three numbers describe the three images of a white lamp. Light of a single wavelength has only one image.
 #[test]
 fn an_rgb_index_asks_for_heroes_under_light_that_is_not_white() {
-    let of = |light: &str| behind("{ rgb = [1.5, 1.55, 1.6] }", PRISM, RGB, light, "");
-    assert_eq!(of("10").method.basis.name(), "rgb");
+    let plan_under = |light: &str| behind("{ rgb = [1.5, 1.55, 1.6] }", PRISM, RGB, light, "");
+    assert_eq!(plan_under("10").method.basis.name(), "rgb");
     for light in ["{ lines = [[587.56, 9]] }", "{ samples = [[586, 9], [589, 9]] }"] {
-        let plan = of(light);
+        let plan = plan_under(light);
         assert!(plan.method.basis.draws_wavelengths(), "{light}: {:?}", plan.because);
     }
     let same = behind("{ rgb = [1.5, 1.5, 1.5] }", PRISM, RGB, "{ lines = [[587.56, 9]] }", "");
@@ -123,10 +123,10 @@ fn measured_colors_get_as_many_lanes_as_the_tolerance_asks() {
 }
 
 /// Plans a film with an index and a thickness in nm under a uniform sky. Its colors may be off by a thousandth at most.
-fn film(index: f64, nm: u32, of_film: &str) -> Plan {
+fn film(index: f64, nm: u32, keys: &str) -> Plan {
     let view = view([0.0, 0.0, 6.0], [0.0, 0.0, 0.0], 30.0, 16);
     plan(&scene(&format!(
-        "{view}{of_film}\n[render]\nerror = 0.003\n[material.soap]\nthin = {{ index = {index}, thickness_nm = {nm} }}\n\
+        "{view}{keys}\n[render]\nerror = 0.003\n[material.soap]\nthin = {{ index = {index}, thickness_nm = {nm} }}\n\
          [[object]]\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\nmaterial = \"soap\"\n\
          [[light]]\nenvironment = {{ radiance = 1 }}\n"
     )))
@@ -139,26 +139,26 @@ fn where_no_number_of_lanes_is_enough_those_that_miss_least_are_taken() {
         let plan = film(index, nm, "");
         let least = plan.candidates.iter().map(|candidate| candidate.bound()).fold(f64::INFINITY, f64::min);
         assert!(least > 0.001 && plan.model_error == least, "{nm} nm: {:?}", plan.because);
-        let said = if plan.method.basis.lanes() == 32 {
+        let statement = if plan.method.basis.lanes() == 32 {
             "the most lanes available"
         } else {
             "more lanes would be no more accurate"
         };
-        let said = format!("{said}; some color may be off by more than is tolerated");
-        assert!(plan.because.iter().any(|line| line.ends_with(&said)), "{nm} nm: {:?}", plan.because);
+        let statement = format!("{statement}; some color may be off by more than is tolerated");
+        assert!(plan.because.iter().any(|line| line.ends_with(&statement)), "{nm} nm: {:?}", plan.because);
         lanes.push(plan.method.basis.lanes());
     }
     assert!(lanes[0] == 32 && lanes[1] < 32 && lanes[2] < 32, "{lanes:?}");
 }
 
 #[test]
-fn where_spectra_are_asked_for_it_is_still_said_that_colors_are_missed() {
-    let said = |nm: u32| {
+fn where_spectra_are_requested_the_error_of_colors_is_still_reported() {
+    let statement = |nm: u32| {
         let because = film(1.33, nm, "spectral = true").because;
         let line = because.iter().find(|line| line.starts_with("model bands 32: ")).expect("it is told").clone();
         line.split_once("the most lanes available, for the spectra").expect("spectra are asked for").1.to_owned()
     };
-    assert_eq!([3000, 100].map(said), ["; some color may be off by more than is tolerated", ""]);
+    assert_eq!([3000, 100].map(statement), ["; some color may be off by more than is tolerated", ""]);
 }
 
 #[test]
@@ -226,7 +226,7 @@ fn lamps_and_skies_that_the_camera_does_not_see_are_not_seen_through_holes_and_p
 }
 
 #[test]
-fn an_error_of_one_is_told_to_be_all_there_is() {
+fn an_error_of_one_is_explained_as_100_percent() {
     for (error, is_told) in [("1", true), ("0.01", false)] {
         let plan = behind("1.5", BALL, RGB, "10", &format!("error = {error}"));
         let hints = plan.because.concat().contains("at most 100 % (0.01 asks for 1 %) in 95 of 100 renders");
@@ -249,9 +249,9 @@ fn routes_are_no_longer_than_paths() {
         let basis = Basis::wavelengths(scene.film.color_space, ROUTES_NM.into(), &[]);
         let method = Method::of_paths(basis, Transport::Random { split: 1.0, roulette: 0.0 }, 1);
         let found = routes(&World::new(&scene, Method { max_bounces, ..method })).concat();
-        let of_pane = |step: &Step| scene.materials[step.material as usize].name == "pane";
+        let is_pane = |step: &Step| scene.materials[step.material as usize].name == "pane";
         let counts = |step: &&Step| {
-            !(matches!(step.way, RouteEvent::Inside(_)) || of_pane(step) && step.way == RouteEvent::Crossed)
+            !(matches!(step.way, RouteEvent::Inside(_)) || is_pane(step) && step.way == RouteEvent::Crossed)
         };
         let surfaces = |route: &Route| route.steps.iter().filter(counts).count();
         let longest = found.iter().map(surfaces).max();
@@ -320,7 +320,7 @@ fn a_mask_without_holes_leaves_nothing_to_chance_beside_a_holdout() {
 }
 
 #[test]
-fn a_color_that_is_missed_altogether_is_told_without_a_number() {
+fn a_color_that_is_missed_entirely_is_reported_without_a_number() {
     let copper = "[material]\ncopper.conductor = { metal = \"Cu\" }\nlamp.emissive.radiance.blackbody = 2800\n";
     let wall = |point: &str, normal: &str| {
         format!("[[object]]\nshape.plane = {{ point = {point}, normal = {normal} }}\nmaterial = \"copper\"\n")
@@ -330,13 +330,13 @@ fn a_color_that_is_missed_altogether_is_told_without_a_number() {
         "[[object]]\nshape.quad = { center = [0, 0.5, -20], u = [9, 0, 0], v = [0, 0.5, 0] }\nmaterial = \"lamp\"\n";
     let view = view([0.0, 0.5, 0.0], [0.0, 0.5, -1.0], 140.0, 60);
     let plan = plan(&scene(&format!("{view}{copper}{walls}{lamp}")));
-    let said = plan.because.iter().find(|line| line.starts_with("colors are off")).expect("a bound");
-    assert!(plan.candidates[0].bound() > 1.0, "{said}");
-    assert!(said.contains("prefiltered by the light over 100 %, bands 8 "), "{said}");
+    let statement = plan.because.iter().find(|line| line.starts_with("colors are off")).expect("a bound");
+    assert!(plan.candidates[0].bound() > 1.0, "{statement}");
+    assert!(statement.contains("prefiltered by the light over 100 %, bands 8 "), "{statement}");
 }
 
 #[test]
-fn polarization_that_is_left_out_is_told_beside_what_is_tolerated() {
+fn polarization_that_is_left_out_is_reported_with_the_tolerance() {
     let view = view([0.0, 2.0, 6.0], [0.0, 0.0, 0.0], 30.0, 60);
     let plan = plan(&scene(&format!(
         "{view}[material]\nwhite.diffuse.reflectance = 0.7\nglass.dielectric.index = 1.5\n\
@@ -344,13 +344,14 @@ fn polarization_that_is_left_out_is_told_beside_what_is_tolerated() {
          [[object]]\nshape.sphere = {{ center = [0, 1, 0], radius = 0.2 }}\nmaterial = \"glass\"\n\
          [[light]]\nenvironment.radiance = 1\n"
     )));
-    let said = plan.left_out.iter().find(|line| line.starts_with("left out: polarization")).expect("it is left out");
-    assert!(said.ends_with("% of the light seen, within the 1.0 % that is tolerated"), "{said}");
+    let statement =
+        plan.left_out.iter().find(|line| line.starts_with("left out: polarization")).expect("it is left out");
+    assert!(statement.ends_with("% of the light seen, within the 1.0 % that is tolerated"), "{statement}");
 }
 
 #[test]
-fn of_many_materials_the_first_are_told_of_and_the_others_counted() {
-    let told = |count: usize| {
+fn of_many_materials_the_first_are_named_and_the_others_counted() {
+    let named_materials = |count: usize| {
         let glass = |i: usize| {
             let shape = format!("sphere = {{ center = [{i}, 0, 0], radius = 0.4 }}");
             body(&format!("glass{i}"), "dielectric.index = 1.5", &[&shape])
@@ -361,10 +362,10 @@ fn of_many_materials_the_first_are_told_of_and_the_others_counted() {
         because.into_iter().filter(about).collect::<Vec<_>>()
     };
     let line = |i: usize| format!("material glass{i}: index 1.5000 in every lane, so lanes stay together");
-    assert_eq!(told(20), (0..20).map(line).collect::<Vec<_>>());
+    assert_eq!(named_materials(20), (0..20).map(line).collect::<Vec<_>>());
     for (count, more) in [(21, "1 more material is"), (30, "10 more materials are")] {
-        let told = told(count);
-        assert_eq!(told[..20], (0..20).map(line).collect::<Vec<_>>());
-        assert!(told.len() == 21 && told[20].starts_with(more), "{told:?}");
+        let named_materials = named_materials(count);
+        assert_eq!(named_materials[..20], (0..20).map(line).collect::<Vec<_>>());
+        assert!(named_materials.len() == 21 && named_materials[20].starts_with(more), "{named_materials:?}");
     }
 }

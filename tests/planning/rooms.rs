@@ -107,7 +107,7 @@ fn room(number: usize) -> Room {
         text +=
             &format!("[[object]]\nshape.cube = {{ center = [{wall}, 0, 0], size = 0.1 }}\nmaterial = \"wall{wall}\"\n");
         paints.push(Box::new(move |nm| {
-            let (below, fraction) = visible::place(nm);
+            let (below, fraction) = visible::grid_position(nm);
             values[below] + fraction * (values[below + 1] - values[below])
         }));
         names.push(wall);
@@ -141,7 +141,7 @@ fn true_error(room: &Room, basis: &Basis) -> f64 {
     let mut worst: f64 = 0.0;
     for wall in 0..6 {
         let filter = Lanes::<MAX_LANES>::from_fn(|lane| lanes.get(lane).map_or(0.0, |walls| walls[wall] as f32));
-        let color = response.sensor(&draw, emission * filter, false);
+        let color = response.film_rgb(&draw, emission * filter, false);
         let strongest = exact[wall].iter().fold(0.0, |most: f64, x| larger(most, x.abs()));
         worst = (0..3).fold(worst, |worst, c| larger(worst, (color[c] - exact[wall][c]).abs() / strongest));
     }

@@ -60,27 +60,27 @@ fn body(gem: bool, material: &str, width: f64, [x, y, z]: [f64; 3]) -> String {
     )
 }
 
-fn parts(plan: &Plan) -> bool {
+fn lets_lanes_part(plan: &Plan) -> bool {
     plan.method.basis.draws_wavelengths()
 }
 
 /// Returns a body in one of the places, with what surrounds it. The body is sized to be seen `pixels` wide.
-fn placed(place: &str, gem: bool, material: &str, pixels: f64) -> String {
+fn scene_at_place(place: &str, gem: bool, material: &str, pixels: f64) -> String {
     let at = |distance: f64| pixels * pixel() * distance;
     // Off center, so that no ray of a grid hits it by luck.
-    let aside = |distance: f64| [0.137 * distance, 0.071 * distance, -distance];
+    let off_center = |distance: f64| [0.137 * distance, 0.071 * distance, -distance];
     let cube = |material: &str, z: f64, size: [f64; 3]| {
         object(material, &format!("cube = {{ center = [0, 0, {z:?}], size = {size:?} }}"))
     };
     let quad = |material: &str, center: [f64; 3], u: [f64; 3], v: [f64; 3]| object(material, &quad(center, u, v));
-    let here = |distance: f64| body(gem, material, at(distance), aside(distance));
+    let body_at = |distance: f64| body(gem, material, at(distance), off_center(distance));
     match place {
-        "in the open" => here(10.0),
-        "behind a thin pane" => here(10.0) + &quad("pane", [0.0, 0.0, -4.0], [3.0, 0.0, 0.4], [0.0, 3.0, 0.0]),
-        "behind a slab of plain glass" => here(10.0) + &cube("plain", -4.0, [6.0, 6.0, 0.1]),
-        "behind a slab of N-BK7" => here(10.0) + &cube("crown", -4.0, [6.0, 6.0, 0.1]),
+        "in the open" => body_at(10.0),
+        "behind a thin pane" => body_at(10.0) + &quad("pane", [0.0, 0.0, -4.0], [3.0, 0.0, 0.4], [0.0, 3.0, 0.0]),
+        "behind a slab of plain glass" => body_at(10.0) + &cube("plain", -4.0, [6.0, 6.0, 0.1]),
+        "behind a slab of N-BK7" => body_at(10.0) + &cube("crown", -4.0, [6.0, 6.0, 0.1]),
         "behind two slabs" => {
-            here(10.0) + &cube("plain", -4.0, [6.0, 6.0, 0.1]) + &cube("crown", -5.0, [8.0, 8.0, 0.1])
+            body_at(10.0) + &cube("plain", -4.0, [6.0, 6.0, 0.1]) + &cube("crown", -5.0, [8.0, 8.0, 0.1])
         }
         "in a flat mirror" => {
             let mirror = quad("mirror", [0.0, 0.0, -6.0], [2.0, 0.0, 2.0], [0.0, 3.0, 0.0]);
@@ -92,8 +92,10 @@ fn placed(place: &str, gem: bool, material: &str, pixels: f64) -> String {
             let ball = object("mirror", "sphere = { center = [0, 0, -10], radius = 2 }");
             body(gem, material, at(8.0) * 9.0, [2.5, 1.5, -1.0]) + &ball
         }
-        "in a body of water" => here(10.0) + &object("water", "plane = { point = [0, 0, -3], normal = [0.1, 0.2, 1] }"),
-        "in a tank" => here(10.0) + &cube("plain", -10.0, [9.0, 7.0, 6.0]) + &cube("water", -10.0, [8.8, 6.8, 5.8]),
+        "in a body of water" => {
+            body_at(10.0) + &object("water", "plane = { point = [0, 0, -3], normal = [0.1, 0.2, 1] }")
+        }
+        "in a tank" => body_at(10.0) + &cube("plain", -10.0, [9.0, 7.0, 6.0]) + &cube("water", -10.0, [8.8, 6.8, 5.8]),
         "in a mirror behind a pane" => {
             body(gem, material, at(14.0), [-6.5, 0.9, -7.5])
                 + &quad("mirror", [0.0, 0.0, -7.0], [2.0, 0.0, 2.0], [0.0, 3.0, 0.0])
@@ -117,39 +119,39 @@ const PLACES: [&str; 10] = [
 ];
 
 /// Returns the sizes and places in which a body is missed.
-fn missed(gem: bool, material: &str) -> Vec<String> {
-    let mut missed = Vec::new();
+fn missed_cases(gem: bool, material: &str) -> Vec<String> {
+    let mut missed_cases = Vec::new();
     for place in PLACES {
         for pixels in [3.0, 10.0, 30.0] {
-            let plan = plan_of(&placed(place, gem, material, pixels), SIDE);
-            if !parts(&plan) {
-                missed.push(format!("{pixels} pixels {place}: {:?}", plan.because));
+            let plan = plan_of(&scene_at_place(place, gem, material, pixels), SIDE);
+            if !lets_lanes_part(&plan) {
+                missed_cases.push(format!("{pixels} pixels {place}: {:?}", plan.because));
             }
         }
     }
-    missed
+    missed_cases
 }
 
 #[test]
 fn w9_prisms_of_3_10_and_30_pixels_are_noticed_wherever_they_are() {
-    assert_eq!(missed(false, "flint"), [""; 0]);
+    assert_eq!(missed_cases(false, "flint"), [""; 0]);
 }
 
 #[test]
 fn w9_gems_of_3_10_and_30_pixels_are_noticed_wherever_they_are() {
-    assert_eq!(missed(true, "flint"), [""; 0]);
+    assert_eq!(missed_cases(true, "flint"), [""; 0]);
 }
 
 #[test]
 fn w9_prisms_of_low_dispersion_are_noticed_wherever_they_are() {
-    assert_eq!(missed(false, "crown"), [""; 0]);
+    assert_eq!(missed_cases(false, "crown"), [""; 0]);
 }
 
 #[test]
 fn gems_of_vanishing_dispersion_keep_lanes_together_wherever_they_are() {
     for place in PLACES {
-        let plan = plan_of(&placed(place, true, "faint", 10.0), SIDE);
-        assert!(!parts(&plan), "{place}: {:?}", plan.because);
+        let plan = plan_of(&scene_at_place(place, true, "faint", 10.0), SIDE);
+        assert!(!lets_lanes_part(&plan), "{place}: {:?}", plan.because);
     }
 }
 
@@ -158,7 +160,7 @@ fn a_prism_of_3_pixels_is_noticed_in_pictures_of_any_size() {
     for width in [16.0, 100.0, 4000.0, 16384.0] {
         let at = 10.0 * 3.0 * pixel() * SIDE / width;
         let plan = plan_of(&body(false, "flint", at, [1.37, 0.71, -10.0]), width);
-        assert!(parts(&plan), "{width}: {:?}", plan.because);
+        assert!(lets_lanes_part(&plan), "{width}: {:?}", plan.because);
     }
 }
 
@@ -168,13 +170,13 @@ fn windows_of_optical_glass_keep_lanes_together_where_their_edges_are_seen() {
         let pane = "cube = { center = [0.3, 0.2, -8], size = [3, 2, 0.02] }\n\
                     transform = [{ rotate = { axis = [0, 1, 0], degrees = 2 } }]";
         let plan = plan_of(&object(glass, pane), SIDE);
-        assert!(!parts(&plan), "{glass}: {:?}", plan.because);
+        assert!(!lets_lanes_part(&plan), "{glass}: {:?}", plan.because);
     }
 }
 
 #[test]
 fn w9_diamonds_are_noticed_wherever_they_are() {
-    assert_eq!(missed(true, "diamond"), [""; 0]);
+    assert_eq!(missed_cases(true, "diamond"), [""; 0]);
 }
 
 #[test]
@@ -186,15 +188,15 @@ fn dispersion_before_an_even_sky_with_nothing_behind_keeps_lanes_together() {
         )
     };
     let even = plan(&scene(&text("[[light]]\nenvironment = { radiance = 1 }\n")));
-    assert!(!parts(&even), "{:?}", even.because);
+    assert!(!lets_lanes_part(&even), "{:?}", even.because);
     let block = object("stripe", "cube = { center = [0, 0, -9], size = [9, 0.4, 0.4] }");
     let behind = plan(&scene(&(text("[[light]]\nenvironment = { radiance = 1 }\n") + &block)));
-    assert!(parts(&behind), "{:?}", behind.because);
+    assert!(lets_lanes_part(&behind), "{:?}", behind.because);
 }
 
 #[test]
 fn glass_that_no_path_comes_through_keeps_lanes_together() {
-    let body = |place| placed(place, false, "flint", 30.0);
+    let body = |place| scene_at_place(place, false, "flint", 30.0);
     let floor = body("in the open") + &object("wall", "plane = { point = [0, -8, 0], normal = [0, 1, 0] }");
     // Paths meet two surfaces of the glass, the wall, and the mirror.
     for (things, fewest) in [(body("in the open"), 3), (body("in a flat mirror"), 4), (floor, 3)] {
@@ -202,7 +204,7 @@ fn glass_that_no_path_comes_through_keeps_lanes_together() {
             let mut scene = scene_of(&things, SIDE);
             scene.render.max_bounces = Some(most);
             let plan = plan(&scene);
-            assert_eq!(parts(&plan), most == fewest, "max_bounces = {most}: {:?}", plan.because);
+            assert_eq!(lets_lanes_part(&plan), most == fewest, "max_bounces = {most}: {:?}", plan.because);
         }
     }
 }
@@ -221,7 +223,12 @@ fn light_through_a_gem_counts_where_paths_are_long_enough_to_show_it() {
             ));
             scene.render.max_bounces = Some(most);
             let plan = plan(&scene);
-            assert_eq!(parts(&plan), most == fewest, "max_bounces = {most} toward {looks}: {:?}", plan.because);
+            assert_eq!(
+                lets_lanes_part(&plan),
+                most == fewest,
+                "max_bounces = {most} toward {looks}: {:?}",
+                plan.because
+            );
         }
     }
 }
@@ -237,9 +244,9 @@ fn dispersion_inside_a_drop_is_noticed_where_only_what_it_mirrors_inside_shows()
         )))
     };
     let alone = drop("");
-    assert!(parts(&alone), "{:?}", alone.because);
+    assert!(lets_lanes_part(&alone), "{:?}", alone.because);
     let before_an_even_sky = drop("[[light]]\nenvironment = { radiance = 1 }\n");
-    assert!(parts(&before_an_even_sky), "{:?}", before_an_even_sky.because);
+    assert!(lets_lanes_part(&before_an_even_sky), "{:?}", before_an_even_sky.because);
 }
 
 #[test]
@@ -252,10 +259,10 @@ fn dispersion_is_assumed_where_no_ray_sees_anything_through_the_glass() {
         )))
     };
     let dark = glass(9e3);
-    assert!(parts(&dark), "{:?}", dark.because);
-    let told =
+    assert!(lets_lanes_part(&dark), "{:?}", dark.because);
+    let reason =
         "no probe ray saw anything through the dispersive glass in 2 % of the view, where dispersion is assumed; so";
-    assert!(dark.because.iter().any(|line| line.contains(told)), "{:?}", dark.because);
+    assert!(dark.because.iter().any(|line| line.contains(reason)), "{:?}", dark.because);
 }
 
 #[test]
@@ -269,13 +276,13 @@ fn sunlight_through_a_small_gem_out_of_sight_is_noticed() {
     let place = [0.1, 2.7, -6.0];
     for (material, width) in [("flint", 0.05), ("crown", 0.02), ("diamond", 0.03)] {
         let found = plan(&scene(&(head.clone() + sun + &body(true, material, width, place))));
-        assert!(parts(&found), "{material}: {:?}", found.because);
+        assert!(lets_lanes_part(&found), "{material}: {:?}", found.because);
         let faint = plan(&scene(&(head.clone() + sun + &body(true, "faint", width, place))));
-        assert!(!parts(&faint), "{:?}", faint.because);
+        assert!(!lets_lanes_part(&faint), "{:?}", faint.because);
     }
     let pane = object("crown", "cube = { center = [0.1, 2.7, -6], size = [1, 0.01, 1] }");
     let found = plan(&scene(&(head + sun + &pane)));
-    assert!(!parts(&found), "through a pane: {:?}", found.because);
+    assert!(!lets_lanes_part(&found), "through a pane: {:?}", found.because);
 }
 
 #[test]
@@ -289,11 +296,11 @@ fn the_light_of_a_drop_far_above_the_floor_counts_only_where_it_is_not_outshone(
         )))
     };
     let near = plan_of(0.04, 150.0);
-    assert!(parts(&near), "{:?}", near.because);
+    assert!(lets_lanes_part(&near), "{:?}", near.because);
     let far = plan_of(2.7, 150.0);
-    assert!(!parts(&far), "{:?}", far.because);
+    assert!(!lets_lanes_part(&far), "{:?}", far.because);
     let alone = plan_of(2.7, 0.6);
-    assert!(parts(&alone), "{:?}", alone.because);
+    assert!(lets_lanes_part(&alone), "{:?}", alone.because);
 }
 
 #[test]
@@ -304,16 +311,16 @@ fn light_of_small_lamps_through_a_small_gem_out_of_sight_is_noticed() {
     );
     let point = "[[light]]\npoint = { position = [0.15, 3.2, -5.9], intensity = 3 }\n".to_owned();
     let bulb = object("lamp", "sphere = { center = [0.15, 3.2, -5.9], radius = 0.02 }");
-    let mut missed = Vec::new();
+    let mut missed_cases = Vec::new();
     for (name, lamp) in [("point", point), ("bulb", bulb)] {
         for (material, seen) in [("flint", true), ("crown", true), ("diamond", true), ("faint", false)] {
             let found = plan(&scene(&(head.clone() + &lamp + &body(true, material, 0.05, [0.1, 2.7, -6.0]))));
-            if parts(&found) != seen {
-                missed.push(format!("{name} {material}: {:?}", found.because));
+            if lets_lanes_part(&found) != seen {
+                missed_cases.push(format!("{name} {material}: {:?}", found.because));
             }
         }
     }
-    assert!(missed.is_empty(), "{}", missed.join("\n"));
+    assert!(missed_cases.is_empty(), "{}", missed_cases.join("\n"));
 }
 
 #[test]
@@ -329,6 +336,6 @@ fn a_rainbow_that_a_small_prism_out_of_sight_throws_on_a_wall_is_noticed() {
     };
     for (material, seen) in [("crown", true), ("faint", false)] {
         let found = plan(&scene(&text(material)));
-        assert_eq!(parts(&found), seen, "{material}: {:?}", found.because);
+        assert_eq!(lets_lanes_part(&found), seen, "{material}: {:?}", found.because);
     }
 }

@@ -42,75 +42,90 @@ fn bulb(radius: f64) -> String {
 /// Returns all rooms, starting with those that gain from a light pass.
 pub fn rooms() -> Vec<Room> {
     let ball = || object("ball", "glass", BALL);
-    let on = |material: &str, things: &[&str]| floor(material) + &things.concat();
+    let floor_with = |material: &str, things: &[&str]| floor(material) + &things.concat();
     let mut rooms = Vec::new();
     let mut room = |name, things: String, asks, words| {
         rooms.push(Room { name, text: format!("{CAMERA}{MATERIALS}{things}"), asks, words });
     };
-    room("a glass ball under a point", on("white", &[&ball(), POINT]), true, "photons from a point light toward ball");
-    room("a glass ball under a small lamp", on("white", &[&ball(), &bulb(0.1)]), true, "photons from bulb");
-    room("a glass ball in the sun", on("white", &[&ball(), SUN]), true, "photons from the sun");
+    room(
+        "a glass ball under a point",
+        floor_with("white", &[&ball(), POINT]),
+        true,
+        "photons from a point light toward ball",
+    );
+    room("a glass ball under a small lamp", floor_with("white", &[&ball(), &bulb(0.1)]), true, "photons from bulb");
+    room("a glass ball in the sun", floor_with("white", &[&ball(), SUN]), true, "photons from the sun");
     let tilted = object("mirror", "mirror", "quad = { center = [-1, 0.7, 0], u = [0.2, 0.6, 0], v = [0, 0, 0.8] }");
-    room("a tilted mirror in the sun", on("white", &[&tilted, SUN]), true, "photons from the sun");
+    room("a tilted mirror in the sun", floor_with("white", &[&tilted, SUN]), true, "photons from the sun");
     let small = object("bulb", "lamp", "sphere = { center = [1, 2, 0], radius = 0.1 }");
-    room("a tilted mirror that shows a small lamp", on("white", &[&tilted, &small]), true, "photons from bulb");
+    room("a tilted mirror that shows a small lamp", floor_with("white", &[&tilted, &small]), true, "photons from bulb");
     let spot =
         "[[light]]\nspot = { position = [-1.8, 0.1, 0], toward = [1.5, 1.05, 0], cone_angle = 8, intensity = 20 }\n";
     room(
         "a prism in the light of a spot",
-        on("white", &[&object("prism", "flint", PRISM), spot]),
+        floor_with("white", &[&object("prism", "flint", PRISM), spot]),
         true,
         "photons from a spotlight",
     );
     let block = object("block", "silver", "cube = { center = [-0.5, 0.5, 0], size = [0.6, 1, 0.6] }");
-    room("a block of polished silver in the sun", on("white", &[&block, SUN, SKY]), true, "photons from the sun");
+    room(
+        "a block of polished silver in the sun",
+        floor_with("white", &[&block, SUN, SKY]),
+        true,
+        "photons from the sun",
+    );
     // Light passes straight through a pane, so next-event estimation finds it. What the pane reflects goes up.
     let pane = object("pane", "pane", "quad = { center = [0, 1, 0], u = [0.8, 0, 0], v = [0, 0, 0.8] }");
-    room("a pane of window glass in the sun", on("white", &[&pane, SUN, SKY]), false, "no caustic from the sun");
+    room(
+        "a pane of window glass in the sun",
+        floor_with("white", &[&pane, SUN, SKY]),
+        false,
+        "no caustic from the sun",
+    );
     let glass = object("glass", "glass", "cube = { center = [0, 0.6, 0], size = [0.8, 1, 0.8] }")
         + &object("water", "water", "cube = { center = [0, 0.6, 0], size = [0.7, 0.8, 0.7] }");
-    room("a vessel of water in the sun", on("white", &[&glass, SUN, SKY]), true, "photons from the sun");
+    room("a vessel of water in the sun", floor_with("white", &[&glass, SUN, SKY]), true, "photons from the sun");
     room(
         "a glass ball under a lamp as wide as the ball",
-        on("white", &[&ball(), &bulb(0.5)]),
+        floor_with("white", &[&ball(), &bulb(0.5)]),
         true,
         "photons from bulb",
     );
     room(
         "a glass ball on brushed metal under a point",
-        on("brushed", &[&ball(), POINT]),
+        floor_with("brushed", &[&ball(), POINT]),
         true,
         "photons from a point light",
     );
 
     room(
         "a chalk ball under a point",
-        on("white", &[&object("ball", "white", BALL), POINT]),
+        floor_with("white", &[&object("ball", "white", BALL), POINT]),
         false,
         "no caustics: no surface is smooth glass, a mirror or polished metal",
     );
     room(
         "a ball of frosted glass under a point",
-        on("white", &[&object("ball", "frosted", BALL), POINT]),
+        floor_with("white", &[&object("ball", "frosted", BALL), POINT]),
         false,
         "no caustics: no surface is smooth glass, a mirror or polished metal",
     );
     room(
         "a glass ball under a huge lamp",
-        on("white", &[&ball(), &bulb(2.0)]),
+        floor_with("white", &[&ball(), &bulb(2.0)]),
         false,
         "no photon tracing: rays hit bulb (solid angle ",
     );
     let past = "[[light]]\nspot = { position = [-3, 3, 0], toward = [1, -3, 0], cone_angle = 20, intensity = 20 }\n";
     room(
         "a glass ball beside the cone of a spot",
-        on("white", &[&ball(), past]),
+        floor_with("white", &[&ball(), past]),
         false,
         "no caustic from a spotlight in sight",
     );
     room(
         "a glass ball under the floor",
-        on("white", &[&ball().replace("0.8, 0]", "-0.8, 0]"), POINT]),
+        floor_with("white", &[&ball().replace("0.8, 0]", "-0.8, 0]"), POINT]),
         false,
         "no caustic from a point light in sight",
     );
@@ -118,22 +133,27 @@ pub fn rooms() -> Vec<Room> {
     let low = "[[light]]\npoint = { position = [2, 1.5, 0], intensity = 3 }\n";
     room(
         "a glass ball behind a wall",
-        on("white", &[&ball(), &wall, low]),
+        floor_with("white", &[&ball(), &wall, low]),
         false,
         "no caustic from a point light in sight",
     );
     room(
         "a glass ball on a mirror under a point",
-        on("mirror", &[&ball(), POINT]),
+        floor_with("mirror", &[&ball(), POINT]),
         false,
         "no caustics: there is no diffuse or rough surface to show one",
     );
     room(
         "a glass ball where light leaves no diffuse surface",
-        on("white", &[&ball(), POINT, "[render]\ndiffuse_bounces = 0\n"]),
+        floor_with("white", &[&ball(), POINT, "[render]\ndiffuse_bounces = 0\n"]),
         false,
         "no caustics: with diffuse_bounces 0",
     );
-    room("a glass ball on a black floor", on("black", &[&ball(), POINT]), false, "the surfaces they land on are black");
+    room(
+        "a glass ball on a black floor",
+        floor_with("black", &[&ball(), POINT]),
+        false,
+        "the surfaces they land on are black",
+    );
     rooms
 }

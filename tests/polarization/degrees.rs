@@ -4,11 +4,11 @@ use abbe::Image;
 use abbe::math::DVec3;
 
 use super::{BLACK_GLASS, ROUNDING, SKY, mirrors, polarizer, retarder, sheets};
-use crate::support::scenes::{one_pixel, rendered};
+use crate::support::scenes::{one_pixel, render_text};
 
 /// Renders one pixel. Returns its degree, linear degree and angle.
 fn degrees(rest: &str) -> [f64; 3] {
-    let image = rendered(&(one_pixel("", ", layers = [\"polarization\"]") + rest));
+    let image = render_text(&(one_pixel("", ", layers = [\"polarization\"]") + rest));
     let one = |channel: &str| f64::from(image.layer(&format!("polarization.{channel}")).expect("it is there")[0]);
     ["degree", "linear_degree", "angle"].map(one)
 }
@@ -58,14 +58,18 @@ fn shadow_catchers_leave_no_stokes_vectors() {
              shape.plane = {{ point = [0, 0, 0], normal = [0, 0.8, 0.6] }}\n"
         )
     };
-    let seen = |keys: &str| rendered(&(one_pixel("", ", stokes = true, layers = [\"polarization\"]") + &coated(keys)));
-    let of = |image: &Image, channel: &str| image.layer(channel).expect("it is there")[0];
+    let seen =
+        |keys: &str| render_text(&(one_pixel("", ", stokes = true, layers = [\"polarization\"]") + &coated(keys)));
+    let value_of = |image: &Image, channel: &str| image.layer(channel).expect("it is there")[0];
     let (shown, caught) = (seen(""), seen("shadow_catcher = true"));
-    assert!(of(&shown, "polarization.degree") > 0.05 && of(&shown, "S1.G").abs() > 0.01, "the coat polarizes");
+    assert!(
+        value_of(&shown, "polarization.degree") > 0.05 && value_of(&shown, "S1.G").abs() > 0.01,
+        "the coat polarizes"
+    );
     for channel in
         ["G", "S1.G", "S2.G", "S3.G", "polarization.degree", "polarization.linear_degree", "polarization.angle"]
     {
-        assert_eq!(of(&caught, channel), 0.0, "{channel}");
+        assert_eq!(value_of(&caught, channel), 0.0, "{channel}");
     }
 }
 
@@ -91,16 +95,16 @@ fn photons_leave_no_stokes_vectors_on_shadow_catchers() {
         shape.sphere = { center = [-1, 3.5, 1], radius = 0.02 }
         material = "lamp"
     "#;
-    let (caught, shown) = (rendered(text), rendered(&text.replace("shadow_catcher = true", "")));
+    let (caught, shown) = (render_text(text), render_text(&text.replace("shadow_catcher = true", "")));
     assert!(caught.because().iter().any(|line| line.starts_with("photon tracing")), "{:?}", caught.because());
     let (mut dark, mut polarized) = (0, 0);
     for (pixel, rgb) in caught.rgb().into_iter().enumerate().filter(|(_, rgb)| *rgb == [0.0; 3]) {
-        let of = |image: &Image, channel: &str| image.layer(channel).expect("it is there")[pixel];
+        let value_of = |image: &Image, channel: &str| image.layer(channel).expect("it is there")[pixel];
         for channel in ["S1.G", "S2.G", "S3.G", "polarization.degree", "polarization.angle"] {
-            assert_eq!(of(&caught, channel), 0.0, "{channel} of pixel {pixel}, which is {rgb:?}");
+            assert_eq!(value_of(&caught, channel), 0.0, "{channel} of pixel {pixel}, which is {rgb:?}");
         }
-        dark += usize::from(of(&caught, "shadow.G") != 0.0);
-        polarized += usize::from(of(&shown, "polarization.degree") > 0.02);
+        dark += usize::from(value_of(&caught, "shadow.G") != 0.0);
+        polarized += usize::from(value_of(&shown, "polarization.degree") > 0.02);
     }
     assert!(dark > 100 && polarized > 100, "{dark} pixels of the catcher, {polarized} polarized as a floor");
 }

@@ -35,8 +35,9 @@ fn both_lights_of_a_bent_surface_are_polarized_as_they_arrive() {
             (plastic, ""),
             (plastic, ", polarizer = { axis = 100 }"),
         ] {
-            let of = |shape: &str, toward: DVec3| stokes(camera, &sunlit(material, shape, toward));
-            let (found, [straight, folded]) = (of(&bent, toward), [toward, below].map(|sun| of(&tilted, sun)));
+            let stokes_of = |shape: &str, toward: DVec3| stokes(camera, &sunlit(material, shape, toward));
+            let (found, [straight, folded]) =
+                (stokes_of(&bent, toward), [toward, below].map(|sun| stokes_of(&tilted, sun)));
             assert!(straight[0] > 1e-3 && folded[0] > 1e-3, "{material}: both bring light");
             let expected = [0, 1, 2, 3].map(|i| straight[i] + folded[i]);
             assert_near(found, expected, 1e-6, &format!("{material}{camera}, sun toward {toward}"));

@@ -2,23 +2,23 @@
 
 use abbe::plan::plan;
 
-use super::{SKY, in_green, sheets};
-use crate::support::scenes::{films_of, moments, one_pixel, scene, standard_errors};
+use super::{SKY, green_stokes, sheets};
+use crate::support::scenes::{films_of, mean_and_variance, one_pixel, scene, sigma_limit};
 
 /// Returns what is seen of a surface that is turned from the viewer under a uniform sky: S0 to S3, each as mean and
 /// variance over renders with different seeds.
-fn in_an_even_sky(material: &str, turned: f64) -> [(f64, f64); 4] {
-    of_objects(&sheets(&[material.to_owned()], turned))
+fn stokes_in_even_sky(material: &str, turned: f64) -> [(f64, f64); 4] {
+    stokes_of_objects(&sheets(&[material.to_owned()], turned))
 }
 
 /// Returns what is seen of any objects in front of the sky: S0 to S3, each as mean and variance over renders with
 /// different seeds.
-fn of_objects(objects: &str) -> [(f64, f64); 4] {
+fn stokes_of_objects(objects: &str) -> [(f64, f64); 4] {
     let mut scene = scene(&(one_pixel("", ", stokes = true") + objects));
     scene.render.samples = Some(SAMPLES);
     // Planning takes longer than rendering a pixel.
     let films = films_of(&scene, &plan(&scene).method, 0..SEEDS);
-    std::array::from_fn(|part| moments(films.iter().map(|film| in_green(film)[part])))
+    std::array::from_fn(|part| mean_and_variance(films.iter().map(|film| green_stokes(film)[part])))
 }
 
 /// Each wavelength leaves rough glass in another direction, with its own pdf. The glass is as clear as with lanes that
@@ -33,8 +33,8 @@ fn rough_glass_that_parts_wavelengths_leaves_even_light_unpolarized() {
                  shape.cube = {{ center = [0, 0, 0], size = 1 }}\n\
                  transform = [{{ rotate = {{ axis = [1, 3, 0.3], degrees = 28 }} }}]\n"
             );
-            let limit = 1.4 * standard_errors(6 * 4);
-            for (part, (mean, variance)) in of_objects(&objects).into_iter().enumerate() {
+            let limit = 1.4 * sigma_limit(6 * 4);
+            for (part, (mean, variance)) in stokes_of_objects(&objects).into_iter().enumerate() {
                 let expected = if part == 0 { 1.0 } else { 0.0 };
                 let error = (variance / SEEDS as f64).sqrt();
                 println!("{index}, {roughness}, S{part}: {mean:.5} +- {error:.5}");
@@ -61,10 +61,10 @@ fn white_plastic_in_light_from_all_around_leaves_it_unpolarized() {
     for roughness in [0.0, 0.02, 0.2, 0.6, 1.0] {
         for turned in [30.0, 60.0, 80.0, 88.0] {
             let plastic = format!("plastic = {{ reflectance = 1, roughness = {roughness} }}");
-            let found = in_an_even_sky(&plastic, turned);
+            let found = stokes_in_even_sky(&plastic, turned);
             // Means of 16 have the tails of Student's t. So far out they are 1.4 times as wide as those of the normal
             // distribution.
-            let limit = 1.4 * standard_errors(5 * 4 * 4);
+            let limit = 1.4 * sigma_limit(5 * 4 * 4);
             for (part, (mean, variance)) in found.into_iter().enumerate() {
                 let expected = if part == 0 { 1.0 } else { 0.0 };
                 let error = (variance / SEEDS as f64).sqrt();
@@ -83,8 +83,8 @@ fn a_mirror_mixed_with_rough_white_plastic_leaves_even_light_unpolarized() {
             "mix = {{ materials = {materials:?}, amount = 0.5 }}\n[material.bare]\nmirror = {{}}\n\
              [material.coated]\nplastic = {{ reflectance = 1, roughness = 0.4 }}"
         );
-        let found = in_an_even_sky(&mix, 60.0);
-        let limit = 1.4 * standard_errors(2 * 4);
+        let found = stokes_in_even_sky(&mix, 60.0);
+        let limit = 1.4 * sigma_limit(2 * 4);
         for (part, (mean, variance)) in found.into_iter().enumerate() {
             let expected = if part == 0 { 1.0 } else { 0.0 };
             let error = (variance / SEEDS as f64).sqrt();

@@ -11,7 +11,7 @@ use crate::support::larger::larger;
 use crate::support::scenes::{EVERY_BRANCH, film_of, method, one_pixel, scene};
 
 /// Returns a sky seen straight through a polarizer along x, a plate at 45 degrees and a second polarizer.
-fn between(plate: &str, second: [f64; 3], sky: &str) -> String {
+fn between_polarizers(plate: &str, second: [f64; 3], sky: &str) -> String {
     let mut text = one_pixel("", "") + &format!("[[light]]\nenvironment.radiance = {sky}\n");
     let sheets = [
         "polarizer.axis = [1, 0, 0]".to_owned(),
@@ -41,7 +41,7 @@ fn lanes(text: &str, basis: &Basis, three: [usize; 3]) -> [f64; 3] {
 }
 
 /// Returns the transmittance of a plate between crossed polarizers for unpolarized light.
-fn crossed(nm: f64, retardation: f64) -> f64 {
+fn crossed_transmittance(nm: f64, retardation: f64) -> f64 {
     0.5 * (PI * retardation / nm).sin().powi(2)
 }
 
@@ -52,10 +52,10 @@ fn crossed_polarizers_let_through_sin_squared_of_half_the_phase() {
     let basis = Basis::wavelengths(ColorSpace::Rec709, vec![600.0], &nm);
     for retardation in [0.0, 137.5, 550.0, -1300.0, 20_000.0, 1e6] {
         let plate = format!("retardation_nm = {retardation:?}");
-        let dark = lanes(&between(&plate, CROSSED, "1"), &basis, [1, 2, 3]);
-        let bright = lanes(&between(&plate, PARALLEL, "1"), &basis, [1, 2, 3]);
+        let dark = lanes(&between_polarizers(&plate, CROSSED, "1"), &basis, [1, 2, 3]);
+        let bright = lanes(&between_polarizers(&plate, PARALLEL, "1"), &basis, [1, 2, 3]);
         for i in 0..3 {
-            let expected = crossed(nm[i], retardation);
+            let expected = crossed_transmittance(nm[i], retardation);
             assert!((dark[i] - expected).abs() < 2e-6, "{retardation} nm at {} nm: {} for {expected}", nm[i], dark[i]);
             assert!(
                 (dark[i] + bright[i] - 0.5).abs() < 2e-6,
@@ -70,8 +70,8 @@ fn crossed_polarizers_let_through_sin_squared_of_half_the_phase() {
 #[test]
 fn a_retardation_is_a_retardance_at_its_wavelength() {
     let basis = Basis::wavelengths(ColorSpace::Rec709, vec![600.0], &[500.0, 550.0, 600.0]);
-    let [_, by_length, _] = lanes(&between("retardation_nm = 137.5", CROSSED, "1"), &basis, [1, 2, 3]);
-    let by_phase = lanes(&between("retardance = 90", CROSSED, "1"), &basis, [1, 2, 3]);
+    let [_, by_length, _] = lanes(&between_polarizers("retardation_nm = 137.5", CROSSED, "1"), &basis, [1, 2, 3]);
+    let by_phase = lanes(&between_polarizers("retardance = 90", CROSSED, "1"), &basis, [1, 2, 3]);
     assert!((by_length - 0.25).abs() < 1e-6 && (by_phase[1] - by_length).abs() < 1e-6, "{by_length}, {by_phase:?}");
     assert_eq!([by_phase[0], by_phase[2]], [by_phase[1]; 2]);
 }
@@ -84,9 +84,10 @@ fn bands_of_many_orders_are_left_unpolarized() {
     let three = [2, 7, 11];
     let nm = three.map(|lane| basis.wavelengths_nm()[lane]);
     for retardation in [300.0, 1000.0, 2000.0] {
-        let found = lanes(&between(&format!("retardation_nm = {retardation:?}"), CROSSED, "1"), &basis, three);
+        let found =
+            lanes(&between_polarizers(&format!("retardation_nm = {retardation:?}"), CROSSED, "1"), &basis, three);
         for i in 0..3 {
-            let expected = crossed(nm[i], retardation);
+            let expected = crossed_transmittance(nm[i], retardation);
             assert!(
                 (found[i] - expected).abs() < 2e-6,
                 "{retardation} nm at {} nm: {} for {expected}",
@@ -98,7 +99,8 @@ fn bands_of_many_orders_are_left_unpolarized() {
     // Neighbors are 17 to 28 nm apart. If half the phase changes by x across a band, the mean cosine of the phase is
     // below 1 / x.
     for (retardation, most) in [(30_000.0, 0.25 / 4.0), (1e6, 0.25 / 100.0)] {
-        let found = lanes(&between(&format!("retardation_nm = {retardation:?}"), CROSSED, "1"), &basis, three);
+        let found =
+            lanes(&between_polarizers(&format!("retardation_nm = {retardation:?}"), CROSSED, "1"), &basis, three);
         assert!(found.iter().all(|share| (share - 0.25).abs() < most), "{retardation} nm: {found:?}");
     }
 }
@@ -107,7 +109,8 @@ fn bands_of_many_orders_are_left_unpolarized() {
 #[test]
 fn plates_between_polarizers_have_their_colors_in_the_lanes_that_the_plan_chooses() {
     for retardation in [150.0, 560.0, 1100.0, 3000.0] {
-        let text = between(&format!("retardation_nm = {retardation:?}"), CROSSED, "{ illuminant = \"D65\" }");
+        let text =
+            between_polarizers(&format!("retardation_nm = {retardation:?}"), CROSSED, "{ illuminant = \"D65\" }");
         let scene = scene(&text);
         let chosen = plan(&scene);
         assert_eq!(chosen.method.polarization, Polarizing::Traced);
@@ -115,7 +118,7 @@ fn plates_between_polarizers_have_their_colors_in_the_lanes_that_the_plan_choose
         let light = Emission::new(scene.lights[0].emission(), ColorSpace::Rec709);
         let mut expected = [0.0; 3];
         for (nm, column) in abbe::spectrum::visible::wavelengths().zip(light.columns()) {
-            (0..3).for_each(|c| expected[c] += crossed(nm, retardation) * column[c]);
+            (0..3).for_each(|c| expected[c] += crossed_transmittance(nm, retardation) * column[c]);
         }
         let strongest = expected.iter().fold(0.0, |most: f64, x| larger(most, x.abs()));
         let off = (0..3).map(|c| (found[c] - expected[c]).abs()).fold(0.0, larger) / strongest;

@@ -1,13 +1,13 @@
 //! The numbers in the section "Limits" of the reference are those of the code.
 
-use super::{BALL, FILM, VIEW, around, mistakes, page, with};
+use super::{BALL, FILM, VIEW, mistakes, page, scene_around, scene_with};
 
 /// Writes a scene that contains a number.
-type Asking = fn(&str) -> String;
+type SceneWriter = fn(&str) -> String;
 
 /// The beginning of each row of the first table, and a scene that contains a number there.
-const NUMBERS: [(&str, Asking); 35] = [
-    ("`film.width`", |x| around(&fov("30"), &format!("width = {x}, height = 1"), "", "")),
+const NUMBERS: [(&str, SceneWriter); 35] = [
+    ("`film.width`", |x| scene_around(&fov("30"), &format!("width = {x}, height = 1"), "", "")),
     ("`filter`: the `radius`", |x| film(&format!("filter = {{ tent = {{ radius = {x} }} }}"))),
     ("`filter`: the `sigma`", |x| film(&format!("filter = {{ gaussian = {{ sigma = {x} }} }}"))),
     ("`white_luminance`", |x| film(&format!("radiometry = \"absolute\", white_luminance = {x}"))),
@@ -52,52 +52,52 @@ const NUMBERS: [(&str, Asking); 35] = [
 const COUNTS: [(&str, &str, &str); 17] = [
     ("pixels of the film", "src/film/guard.rs", "MOST_PIXELS"),
     ("bytes of the layers", "src/rendering/options.rs", "MOST_OF_LAYERS"),
-    ("bands of a spectral image", "src/spectrum/wavelength_bands.rs", "MOST"),
+    ("bands of a spectral image", "src/spectrum/wavelength_bands.rs", "MAX_COUNT"),
     ("samples of a pixel", "src/plan/stopping.rs", "MOST"),
     ("lanes of a ray", "src/spectrum/table.rs", "MAX_LANES"),
     ("hero wavelengths", "src/spectrum/draw.rs", "MAX_HEROES"),
     ("layers of a coating", "src/material/stack.rs", "MAX_LAYERS"),
     ("clear materials", "src/trace/media.rs", "MOST_MEDIA"),
-    ("materials that one", "src/scene/compile/parts.rs", "MOST_PARTS"),
-    ("materials within", "src/scene/compile/parts.rs", "DEEPEST"),
+    ("materials that one", "src/scene/compile/parts.rs", "MAX_PARTS"),
+    ("materials within", "src/scene/compile/parts.rs", "MAX_DEPTH"),
     ("pixels of an image", "src/film/guard.rs", "MOST_TEXELS"),
-    ("bytes of a scene", "src/scene/text/include.rs", "MOST_BYTES"),
-    ("files that include", "src/scene/text/include.rs", "DEEPEST"),
+    ("bytes of a scene", "src/scene/text/include.rs", "MAX_BYTES"),
+    ("files that include", "src/scene/text/include.rs", "MAX_DEPTH"),
     ("bytes of an OpenEXR file", "src/film/exr_file.rs", "MOST_BYTES"),
-    ("corners of a face", "src/shape/ears.rs", "MOST_CORNERS"),
-    ("triangles of a glTF file", "src/shape/gltf.rs", "MOST"),
+    ("corners of a face", "src/shape/ears.rs", "MAX_CORNERS"),
+    ("triangles of a glTF file", "src/shape/gltf.rs", "MAX_TRIANGLES"),
     ("threads", "src/rendering/options.rs", "MOST_THREADS"),
 ];
 
 /// Rows of the tables whose scenes would need a file.
-const OF_FILES: [&str; 1] = ["`strength` of a normal map"];
+const ROWS_WITH_FILES: [&str; 1] = ["`strength` of a normal map"];
 
 fn fov(degrees: &str) -> String {
     format!("{VIEW}, vertical_fov = {degrees}")
 }
 
 fn camera(camera: &str) -> String {
-    around(camera, FILM, "", "")
+    scene_around(camera, FILM, "", "")
 }
 
 fn film(film: &str) -> String {
-    around(&fov("30"), &format!("{FILM}, {film}"), "", "")
+    scene_around(&fov("30"), &format!("{FILM}, {film}"), "", "")
 }
 
 fn render(render: &str) -> String {
-    around(&fov("30"), FILM, render, "")
+    scene_around(&fov("30"), FILM, render, "")
 }
 
 fn shape(shape: &str) -> String {
-    with(&format!("[[object]]\nshape.{shape}\nmaterial = \"a\"\n"))
+    scene_with(&format!("[[object]]\nshape.{shape}\nmaterial = \"a\"\n"))
 }
 
 fn material(material: &str) -> String {
-    with(&format!("[material.it]\n{material}\n{BALL}material = \"it\"\n"))
+    scene_with(&format!("[material.it]\n{material}\n{BALL}material = \"it\"\n"))
 }
 
 fn light(light: &str) -> String {
-    with(&format!("[[light]]\n{light}\n"))
+    scene_with(&format!("[[light]]\n{light}\n"))
 }
 
 /// Returns the cells of the rows of a table with the given head.
@@ -107,7 +107,7 @@ fn table<'p>(page: &'p str, head: &str) -> Vec<Vec<&'p str>> {
 }
 
 /// Returns a number a little beyond another, as written in a scene, or none if that one is infinite.
-fn beyond(number: &str, up: bool) -> Option<String> {
+fn just_beyond(number: &str, up: bool) -> Option<String> {
     if let Some(number) = ["above ", "below "].into_iter().find_map(|word| number.strip_prefix(word)) {
         return Some(number.to_owned());
     }
@@ -124,7 +124,7 @@ fn beyond(number: &str, up: bool) -> Option<String> {
 fn numbers_at_the_limits_are_accepted_and_those_beyond_are_refused() {
     let page = page("scenes/REFERENCE.md");
     let mut rows = table(&page, "| a number | from | to |");
-    rows.retain(|row| !OF_FILES.iter().any(|known| row[0].starts_with(known)));
+    rows.retain(|row| !ROWS_WITH_FILES.iter().any(|known| row[0].starts_with(known)));
     assert_eq!(rows.len(), NUMBERS.len());
     for (row, (start, scene)) in rows.iter().zip(&NUMBERS) {
         assert!(row[0].starts_with(start), "{row:?}: {start}");
@@ -132,7 +132,7 @@ fn numbers_at_the_limits_are_accepted_and_those_beyond_are_refused() {
             if !limit.contains(' ') {
                 assert_eq!(mistakes(&scene(limit)), [""; 0], "{row:?}");
             }
-            if let Some(wrong) = beyond(limit, up) {
+            if let Some(wrong) = just_beyond(limit, up) {
                 assert_ne!(mistakes(&scene(&wrong)), [""; 0], "{row:?}: {wrong}");
             }
         }

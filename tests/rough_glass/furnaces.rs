@@ -5,7 +5,8 @@ use abbe::spectrum::Basis;
 use abbe::trace::{Method, Transport};
 
 use crate::support::scenes::{
-    EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, film_of, image, method, scene, standard_errors, view,
+    EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, film_of, method, render_film, scene, sigma_limit,
+    view,
 };
 
 const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
@@ -41,10 +42,10 @@ fn rough_glass_is_invisible_in_an_even_environment() {
                 + &format!("[render]\nsamples = {samples}\n")
                 + bodies
                 + &environment(1.0);
-            let (film, report) = image(&text, transport);
+            let (film, report) = render_film(&text, transport);
             assert_eq!((report.non_finite, report.unmatched), (0, 0), "{name}");
             let mean = Mean::of(&film);
-            println!("{name}: {:.5?} +- {:.1e}", mean.value, mean.worst_error([1.0; 3]));
+            println!("{name}: {:.5?} +- {:.1e}", mean.value, mean.worst_relative_error([1.0; 3]));
             // The tables lose or gain 3e-4 at each of a few surfaces: see `sides`. This test judges whole surfaces or
             // lanes.
             for band in 0..3 {
@@ -94,7 +95,7 @@ fn between_equal_indices_rough_glass_is_not_there() {
         |bodies: &str| view([0.3, 0.2, 4.0], [0.0; 3], 30.0, 32) + "filter = \"center\"\n" + bodies + &lamp + SKY;
     let pool = body("water", WATER, &["cube = { center = [0, 0, 0], size = 2.4 }"]);
     let ball = body("ball", "dielectric = { index = 1.333, roughness = 0.6 }", &[BALL]);
-    let [with, without] = [pool.clone() + &ball, pool].map(|bodies| image(&text(&bodies), EVERY_BRANCH).0);
+    let [with, without] = [pool.clone() + &ball, pool].map(|bodies| render_film(&text(&bodies), EVERY_BRANCH).0);
     // No ray is deflected and none is lost. Only the order of roundings may differ.
     for (with, without) in with.pixels.iter().zip(&without.pixels) {
         for (a, b) in with.rgb.into_iter().zip(without.rgb) {
@@ -121,13 +122,13 @@ fn very_dense_rough_glass_neither_gains_nor_loses_seen_from_outside_and_from_ins
         }
     }
     for (what, text, transport, expected) in &cases {
-        let (film, report) = image(text, *transport);
+        let (film, report) = render_film(text, *transport);
         let mean = Mean::of(&film);
         let (value, error) = (mean.value[1] / expected, mean.error[1] / expected);
-        let (z, carried, lost) = ((value - 1.0) / error, carried_by(&film), report.stopped);
+        let (z, carried, lost) = ((value - 1.0) / error, noisy_pixels(&film), report.stopped);
         println!("{what}: {value:.5} +- {error:.1e}, z {z:.2}, by {carried:.0} pixels, {lost} stopped");
         // The rounding of a few hundred factors in 32 bits.
-        let limit = standard_errors(cases.len()) * error + 256.0 * f64::from(f32::EPSILON);
+        let limit = sigma_limit(cases.len()) * error + 256.0 * f64::from(f32::EPSILON);
         assert!((value - 1.0).abs() <= limit && error < 0.05, "{what}: {mean:?}");
         assert!(error < 1e-5 || carried >= 4.0, "{what}: {carried} pixels carry the noise");
     }
@@ -136,7 +137,7 @@ fn very_dense_rough_glass_neither_gains_nor_loses_seen_from_outside_and_from_ins
 /// Returns how many pixels carry the noise: (sum d^2)^2 / sum d^4 for their deviations d. That is a third of them if
 /// the noise is normal. It is a few of them if a tail is so long that the spread of the pixels does not reflect their
 /// error. With fewer than four, the spread is off by half.
-fn carried_by(film: &Film) -> f64 {
+fn noisy_pixels(film: &Film) -> f64 {
     let green = || film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1]));
     let mean = green().sum::<f64>() / film.pixels.len() as f64;
     let [squares, fourths] = [2.0, 4.0].map(|power| green().map(|x| libm::pow(x - mean, power)).sum::<f64>());

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use abbe::material::{FacetSides, RoughInterface};
 use abbe::math::DVec3;
 
-use super::each;
-use crate::support::arrivals::{about_z as at, points};
+use super::for_each_boundary;
+use crate::support::arrivals::{direction_about_z as at, hammersley_points};
 use crate::support::chi_squared;
 use crate::support::random::Random;
 
@@ -20,7 +20,7 @@ const DRAWS: u32 = 1 << 17;
 /// Returns the reflected and the transmitted light in a uniform environment, where radiance over n^2 is 1 everywhere.
 fn furnace(sides: &FacetSides, [n1, n2]: [f64; 2], cos: f64) -> [f64; 2] {
     let (wo, mut sum) = (at(cos, 0.3), [0.0; 2]);
-    for u in points(DRAWS) {
+    for u in hammersley_points(DRAWS) {
         let [reflected, crossed] = sides.draw(wo, u);
         let reflected = reflected.map(|way| sides.reflected(wo, way.wi, way.facet));
         let crossed = crossed.map(|way| sides.crossed(wo, way.wi, way.facet));
@@ -34,7 +34,7 @@ fn furnace(sides: &FacetSides, [n1, n2]: [f64; 2], cos: f64) -> [f64; 2] {
 #[test]
 fn a_lossless_boundary_sends_on_all_light_at_every_roughness_ratio_and_angle() {
     let mut worst = [1.0f64, 1.0];
-    each(&ROUGHNESSES, &INDICES, &COSINES, |sides, indices, cos, what| {
+    for_each_boundary(&ROUGHNESSES, &INDICES, &COSINES, |sides, indices, cos, what| {
         let [reflected, crossed] = furnace(sides, indices, cos);
         let all = reflected + crossed;
         assert!((0.998..=1.001).contains(&all), "{what}: {reflected} + {crossed} = {all}");
@@ -54,7 +54,7 @@ fn the_closer_two_indices_the_less_a_rough_boundary_turns_any_light() {
                 for cos in [0.2, 0.5, 1.0] {
                     let wo = at(cos, 0.3);
                     let mut kept = 0.0;
-                    for u in points(1 << 14) {
+                    for u in hammersley_points(1 << 14) {
                         if let [_, Some(way)] = sides.draw(wo, u)
                             && (wo + way.wi).length() < step.sqrt()
                         {
@@ -187,8 +187,8 @@ fn directions_on_both_sides_follow_their_density_and_the_rest_leads_nowhere() {
 
 #[test]
 fn no_draw_is_not_a_number_along_the_surface_and_between_nearly_equal_indices() {
-    const MOST: f64 = 1.0 - 1.0 / (1 << 24) as f64;
-    let ends = [0.0, f64::MIN_POSITIVE, 0.25, 0.5, MOST];
+    const LARGEST_BELOW_1: f64 = 1.0 - 1.0 / (1 << 24) as f64;
+    let ends = [0.0, f64::MIN_POSITIVE, 0.25, 0.5, LARGEST_BELOW_1];
     for roughness in [0.01, 1.0] {
         let interface = RoughInterface::new(roughness * roughness);
         for [n1, n2] in [[1.0, 1.0f64.next_up()], [1.5, 1.5 + 1e-9], [1.0, 10.0], [10.0, 1.0], [1.5, 1.33]] {

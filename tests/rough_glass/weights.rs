@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use abbe::material::{BsdfValue, FacetSample, FacetSides, RoughInterface};
 use abbe::math::DVec3;
 
-use crate::support::arrivals::about_z as at;
+use crate::support::arrivals::direction_about_z as at;
 use crate::support::chi_squared;
 use crate::support::random::Random;
 
@@ -14,26 +14,26 @@ const INDICES: [f64; 6] = [1.001, 1.1, 1.5, 2.4, 4.0, 9.9];
 const COSINES: [f64; 7] = [1e-12, 1e-3, 0.05, 0.3, 0.6, 0.9, 1.0];
 
 /// Calls `check` with all of these, seen from a direction.
-fn each(check: impl Fn(&FacetSides, [f64; 2], DVec3, &str)) {
-    super::each(&ROUGHNESSES, &INDICES, &COSINES, |sides, indices, cos, what| {
+fn for_each_boundary(check: impl Fn(&FacetSides, [f64; 2], DVec3, &str)) {
+    super::for_each_boundary(&ROUGHNESSES, &INDICES, &COSINES, |sides, indices, cos, what| {
         check(sides, indices, at(cos, 0.7), what)
     });
 }
 
 /// Returns the weights of both sides of a draw: the BSDF value over its pdf, as radiance over n^2.
 fn weights(sides: &FacetSides, [n1, n2]: [f64; 2], wo: DVec3, ways: [Option<FacetSample>; 2]) -> [f64; 2] {
-    let over = |flow: BsdfValue| flow.value / flow.pdf;
+    let weight_of = |flow: BsdfValue| flow.value / flow.pdf;
     let [above, beyond] = ways;
     [
-        above.map_or(0.0, |way| over(sides.reflected(wo, way.wi, way.facet))),
-        beyond.map_or(0.0, |way| over(sides.crossed(wo, way.wi, way.facet)) * (n2 / n1) * (n2 / n1)),
+        above.map_or(0.0, |way| weight_of(sides.reflected(wo, way.wi, way.facet))),
+        beyond.map_or(0.0, |way| weight_of(sides.crossed(wo, way.wi, way.facet)) * (n2 / n1) * (n2 / n1)),
     ]
 }
 
 /// The product of the weights of some 1.7 n^2 surfaces has a long tail unless they hardly vary inside dense glass.
 #[test]
 fn no_draw_is_lost_no_way_weighs_more_than_1_and_dense_glass_sends_on_what_it_gets() {
-    each(|sides, indices @ [n1, n2], wo, what| {
+    for_each_boundary(|sides, indices @ [n1, n2], wo, what| {
         const COUNT: u32 = 20_000;
         let (mut random, mut sum, mut squares) = (Random::new(5), 0.0, 0.0);
         for _ in 0..COUNT {

@@ -3,9 +3,9 @@
 use std::f64::consts::{PI, TAU};
 
 use abbe::material::{Facets, RoughSurface, Roughness};
-use abbe::math::{DVec3, ball_surface};
+use abbe::math::{DVec3, sample_sphere};
 
-use crate::support::arrivals::about_z as at;
+use crate::support::arrivals::direction_about_z as at;
 use crate::support::chi_squared;
 use crate::support::exact::Exact;
 use crate::support::larger::larger;
@@ -126,16 +126,16 @@ fn g4_the_density_of_nearly_even_facets_keeps_its_digits() {
 
 #[test]
 fn g5_no_draw_is_not_a_number() {
-    const MOST: f64 = 1.0 - 1.0 / (1 << 24) as f64;
+    const LARGEST_BELOW_1: f64 = 1.0 - 1.0 / (1 << 24) as f64;
     for value in [0.01, 0.02, 0.1, 0.3, 0.6, 1.0] {
         let roughness = Roughness::new(value);
         let surface = roughness.surface().expect("it is rough");
         for cos in [0.0, 1e-300, 1e-20, 1e-8, 1e-3, 0.1, 0.5, 1.0f64.next_down(), 1.0] {
             let mut random = Random::new(5);
-            let ends = [0.0, f64::MIN_POSITIVE, 0.5, MOST];
+            let ends = [0.0, f64::MIN_POSITIVE, 0.5, LARGEST_BELOW_1];
             let corners = ends.iter().flat_map(|&a| ends.map(|b| [a, b])).collect::<Vec<_>>();
             let inside = (0..100_000).map(|i| match i % 20 {
-                0 => [random.number(), MOST],
+                0 => [random.number(), LARGEST_BELOW_1],
                 1 => [random.number(), 0.0],
                 _ => random.pair(),
             });
@@ -159,7 +159,7 @@ fn light_goes_the_same_way_back() {
         let surface = roughness.surface().expect("it is rough");
         for _ in 0..10_000 {
             let [a, b] = [0; 2].map(|_| {
-                let w = ball_surface(random.pair());
+                let w = sample_sphere(random.pair());
                 DVec3::new(w.x, w.y, w.z.abs())
             });
             let [there, back] = [(a, b), (b, a)].map(|(wo, wi)| {

@@ -4,9 +4,9 @@ use abbe::material::{Material, Roughness};
 use abbe::math::DVec3;
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{self, LOSSLESS, context, material, points, toward};
+use crate::support::arrivals::{self, LOSSLESS, context, direction_at, hammersley_points, material};
 use crate::support::larger::larger;
-use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
+use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, render_film, view};
 
 const ROUGHNESSES: [f64; 9] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
 const COSINES: [f64; 14] = [0.001, 0.003, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 0.9, 1.0];
@@ -21,7 +21,7 @@ const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
 /// Returns what a metal below a medium of the given index shows of a uniform environment of radiance 1.
 fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let draw = Draw::<4>::fixed(3);
-    arrivals::furnace(material, &context(&draw, toward(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
+    arrivals::furnace(material, &context(&draw, direction_at(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn the_table_of_what_is_reflected_once_agrees_with_a_finer_quadrature() {
             let cos = libm::pow(f64::from(step) / 59.0, 3.0);
             let wo = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
             // Points are dense toward upright facets, which block most.
-            let blocked: f64 = points(DRAWS)
+            let blocked: f64 = hammersley_points(DRAWS)
                 .map(|[v, around]| {
                     let h = surface.facets().visible_normal(wo, [around, 1.0 - v * v]);
                     2.0 * v * surface.facets().unshadowed_and_shadowed(wo, h * (2.0 * wo.dot(h)) - wo)[1]
@@ -91,7 +91,7 @@ fn a_lossless_ball_is_invisible_in_an_even_environment() {
                     + &format!("[render]\nsamples = 64\n{bounces}")
                     + &body("metal", &metal, &[BALL])
                     + &environment(1.0);
-                let mean = Mean::of(&image(&text, transport).0);
+                let mean = Mean::of(&render_film(&text, transport).0);
                 println!("roughness {roughness}: {} +- {:.1e}", mean.value[0], mean.error[0]);
                 assert!((mean.value[0] - 1.0).abs() <= 0.001 + 4.0 * mean.error[0], "{roughness}: {mean:?}");
                 assert!(mean.error[0] < 0.001, "{roughness}: {mean:?}");
@@ -116,7 +116,7 @@ fn lossless_metals_stay_invisible_beside_each_other_and_inside_glass() {
                 + "[render]\nsamples = 600\n"
                 + &bodies
                 + &environment(1.0);
-            let mean = Mean::of(&image(&text, transport).0);
+            let mean = Mean::of(&render_film(&text, transport).0);
             println!("{name}: {mean:.5?}");
             for band in 0..3 {
                 let off = (mean.value[band] - 1.0).abs();

@@ -8,7 +8,7 @@ use abbe::trace::{Transport, prepare};
 
 use crate::support::arrivals::context;
 use crate::support::scenes::{
-    EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, assert_aimed_at_as_met, body, image, lamps, method, scene, view,
+    EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, assert_next_event_agrees, body, lamps, method, render_film, scene, view,
 };
 
 const LAMP: &str = "sphere = { center = [-1, 2, 0], radius = 0.7 }";
@@ -27,7 +27,7 @@ fn aiming_at_a_lamp_and_meeting_it_show_the_same() {
     let cases = [0.15, 0.3, 0.6, 1.0];
     for roughness in cases {
         let [aimed_at, met] = [gold(roughness, &aimed_at, 128), gold(roughness, &met, 1024)];
-        assert_aimed_at_as_met([&aimed_at, &met], 8, 0.01, 2 * cases.len(), &format!("roughness {roughness}"));
+        assert_next_event_agrees([&aimed_at, &met], 8, 0.01, 2 * cases.len(), &format!("roughness {roughness}"));
     }
 }
 
@@ -46,7 +46,7 @@ fn a_point_light_shows_the_brdf_itself() {
         let context = ScatterContext { normal: DVec3::Y, ..context(&draw, wo, 1.0) };
         let evaluated = world.scene().material_of(0).evaluate(&context, to_light.normalize());
         let (brdf_cos, _) = evaluated.expect("the light is above the floor");
-        let shown = image(&text, SINGLE_PATH).0.pixels[0].rgb;
+        let shown = render_film(&text, SINGLE_PATH).0.pixels[0].rgb;
         for (band, shown) in shown.into_iter().enumerate() {
             let expected = 10.0 * f64::from(brdf_cos[band]) / to_light.length_squared();
             assert!((f64::from(shown) / expected - 1.0).abs() < 1e-5, "{roughness}: {shown} for {expected}");
@@ -60,7 +60,7 @@ fn the_smoother_a_metal_the_more_it_looks_like_a_smooth_one() {
     let [lamp, _] = lamps(&[LAMP]);
     let shown = |roughness: f64| {
         let text = gold(roughness, &lamp, 256).replace("look_at = [0.5, 0.0, 0.0]", "look_at = [1.1, 0, 0.15]");
-        Mean::rendered(&text, SINGLE_PATH, 8)
+        Mean::render_text(&text, SINGLE_PATH, 8)
     };
     let smooth = shown(0.0);
     assert_eq!(smooth, shown(0.009), "below the least roughness the image is the same to the last bit");
@@ -94,7 +94,7 @@ fn a_scene_with_a_rough_metal_is_left_to_chance_and_a_smooth_one_is_not() {
 fn deterministic_transport_follows_rough_metals_as_well() {
     // The plan does not choose this, but it must not fail: one direction and all lights.
     let [lamp, _] = lamps(&[LAMP]);
-    let (film, _) = image(&gold(0.5, &lamp, 16), EVERY_BRANCH);
+    let (film, _) = render_film(&gold(0.5, &lamp, 16), EVERY_BRANCH);
     assert!(film.pixels.iter().all(|pixel| pixel.rgb.iter().all(|x| x.is_finite() && *x > 0.0)));
     assert!(Roughness::new(0.5).surface().is_some());
 }

@@ -135,7 +135,7 @@ pub fn change() -> impl Strategy<Value = Edit> {
 }
 
 /// Returns a text after an edit.
-pub fn edited(text: &str, edit: &Edit) -> String {
+pub fn apply_edit(text: &str, edit: &Edit) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
     let starts: Vec<usize> = text.char_indices().map(|(at, _)| at).collect();
     if lines.is_empty() || starts.is_empty() {

@@ -8,17 +8,17 @@ use abbe::spectrum::{apply, data};
 
 use super::{FINE, WHITE, room};
 use crate::support::larger::larger;
-use crate::support::scenes::{SHEETS, one_pixel, rendered};
+use crate::support::scenes::{POLARIZING_SHEETS, one_pixel, render_text};
 
 /// Returns the largest difference between the bands of S1, S2 and S3 and their layers, relative to the brightest
 /// channel of the pixel or to one percent of the image's mean. The second result is how much of the image's light is
 /// polarized.
 fn worst_component(image: &Image) -> (f64, f64) {
     let film = image.film();
-    let film_of_xyz = film.color_space.of_xyz();
+    let film_of_xyz = film.color_space.matrix_from_xyz();
     let spectral = film.spectral.as_ref().expect("spectra were asked for");
     assert!(spectral.has_stokes && spectral.bands.count() == data::color_matching().len());
-    let luminous: f64 = data::color_matching().iter().map(|cmf| cmf[1]).sum();
+    let y_integral: f64 = data::color_matching().iter().map(|cmf| cmf[1]).sum();
     let strongest = |rgb: [f32; 3]| rgb.iter().fold(0.0, |most: f64, &x| larger(most, f64::from(x).abs()));
     let mean = film.pixels.iter().map(|pixel| strongest(pixel.rgb)).sum::<f64>() / film.pixels.len() as f64;
     let (mut worst, mut polarized) = (0.0_f64, 0.0);
@@ -28,7 +28,7 @@ fn worst_component(image: &Image) -> (f64, f64) {
         for (number, pixel) in film.pixels.iter().enumerate() {
             let mut xyz = [0.0; 3];
             for (&radiance, cmf) in spectral.component(number, component).iter().zip(data::color_matching()) {
-                (0..3).for_each(|i| xyz[i] += f64::from(radiance) * cmf[i] / luminous);
+                (0..3).for_each(|i| xyz[i] += f64::from(radiance) * cmf[i] / y_integral);
             }
             let color = apply(&film_of_xyz, xyz);
             assert!(color.iter().all(|x| x.is_finite()), "{color:?}");
@@ -54,7 +54,8 @@ fn spectra_of_stokes_vectors_make_their_layers() {
         ("box", "1.5", dye, 1e-3),
     ] {
         let film = format!("{FINE}, stokes = true, filter = \"{filter}\"");
-        let (worst, polarized) = worst_component(&rendered(&(room(&film, glass).replace(floor, floor_of) + SHEETS)));
+        let (worst, polarized) =
+            worst_component(&render_text(&(room(&film, glass).replace(floor, floor_of) + POLARIZING_SHEETS)));
         println!("{filter}, {glass}: {worst:.1e}, {polarized:.3} polarized");
         assert!(worst <= tolerance && polarized > 0.02, "{filter}, {glass}: {worst}, {polarized}");
     }
@@ -64,7 +65,7 @@ fn spectra_of_stokes_vectors_make_their_layers() {
 fn spectrum(rest: &str) -> Vec<(f64, [f64; 4])> {
     let film = ", layers = [\"polarization\"], spectral = { from = 460, to = 660, step = 5 }";
     let sky = "light = [{ environment.radiance.samples = [[300, 1], [900, 1]] }]\n";
-    let image = rendered(&(one_pixel("", film) + sky + rest));
+    let image = render_text(&(one_pixel("", film) + sky + rest));
     let radiance = image.spectrum_at(0, 0).expect("spectra were asked for");
     let [s1, s2, s3] = image.stokes_spectra_at(0, 0).expect("Stokes vectors were asked for");
     (0..radiance.len())
@@ -111,7 +112,7 @@ fn a_wave_plate_shows_its_phase_band_by_band() {
 
 #[test]
 fn spectra_without_stokes_vectors_have_none() {
-    let image = rendered(&room("spectral = true", "1.5"));
+    let image = render_text(&room("spectral = true", "1.5"));
     assert!(image.stokes_spectra_at(0, 0).is_none());
     let spectral = image.film().spectral.as_ref().expect("spectra were asked for");
     assert_eq!(spectral.numbers(), spectral.bands.count());

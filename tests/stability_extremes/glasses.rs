@@ -3,7 +3,7 @@
 use abbe::spectrum::data::glasses;
 use abbe::spectrum::{ColorSpace, Curve, CurveKind, Quantity, Upsampler};
 
-use crate::support::scenes::{Mean, SPLITTING, body, environment, image, view};
+use crate::support::scenes::{Mean, SPLITTING, body, environment, render_film, view};
 
 /// The ends of visible light and of the glass's own range, one floating-point step inside them and far beyond. Beyond
 /// the range, the index is that of its edge.
@@ -41,7 +41,7 @@ fn h10_bodies_of_hardly_any_index_and_of_the_ends_of_roughness_are_invisible_in_
             + "[render]\nsamples = 64\n"
             + &body("glass", &material, &["sphere = { center = [0.1, 0, 0], radius = 1 }"])
             + &environment(1.0);
-        let (film, report) = image(&text, SPLITTING);
+        let (film, report) = render_film(&text, SPLITTING);
         assert_eq!((report.non_finite, report.unmatched), (0, 0), "{material}");
         let mean = Mean::of(&film);
         let rays = report.rays as f64 / report.samples as f64;
@@ -52,7 +52,7 @@ fn h10_bodies_of_hardly_any_index_and_of_the_ends_of_roughness_are_invisible_in_
         // Multiple scattering between facets is tabulated to 3 parts in 10^3 (Kulla & Conty 2017).
         let table = if material.contains("roughness = 1 ") || material.contains("0.02") { 3e-3 } else { 0.0 };
         let off = (mean.value[1] - 1.0).abs();
-        let limit = crate::support::scenes::standard_errors(claims) * mean.error[1] + table + 4e-6;
+        let limit = crate::support::scenes::sigma_limit(claims) * mean.error[1] + table + 4e-6;
         assert!(off <= limit, "{material}: {mean:?}");
         assert!(mean.error[1] < 0.02, "{material}: {mean:?}");
     }

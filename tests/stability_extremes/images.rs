@@ -4,7 +4,7 @@ use abbe::film::DEPTH_OF_NOTHING;
 use abbe::plan::plan;
 use abbe::trace::{prepare, render};
 
-use crate::support::scenes::{SPLITTING, environment, image, scene};
+use crate::support::scenes::{SPLITTING, environment, render_film, scene};
 
 fn view(width: u32, height: u32, fov: f64) -> String {
     format!(
@@ -25,7 +25,7 @@ fn h7_images_of_one_pixel_one_row_and_one_column_are_whole() {
         for filter in ["box", "gaussian", "center"] {
             let text = view(width, height, fov) + ball + &environment(1.0);
             let text = text.replace("film = {", &format!("film = {{ filter = \"{filter}\","));
-            let (film, report) = image(&text, SPLITTING);
+            let (film, report) = render_film(&text, SPLITTING);
             assert_eq!((report.non_finite, report.samples), (0, u64::from(width) * u64::from(height)));
             assert_eq!(film.pixels.len(), (width * height) as usize);
             for (at, pixel) in film.pixels.iter().enumerate() {

@@ -4,7 +4,7 @@
 use abbe::film::DEPTH_OF_NOTHING;
 
 use crate::support::bodies::ball;
-use crate::support::scenes::{GROUND, Mean, SPLITTING, body, environment, image, standard_errors, view};
+use crate::support::scenes::{GROUND, Mean, SPLITTING, body, environment, render_film, sigma_limit, view};
 
 /// Every closed shape under scales that differ by up to 10^6, turned, in a uniform sky. White paint and glass are as
 /// bright as the sky. A wrong normal, cosine or area would change that.
@@ -29,7 +29,7 @@ fn h1_stretched_bodies_and_instances_keep_all_light() {
                     + &body("body", material, &[shape])
                     + &format!("instances = [{}, {}]\n", steps(-0.4), steps(0.5))
                     + &environment(1.0);
-                let (film, report) = image(&text, SPLITTING);
+                let (film, report) = render_film(&text, SPLITTING);
                 let what = format!("{material}, {}, {scale}", &shape[..shape.len().min(40)]);
                 // In a body as thin as 10^-3, a ray aimed at its rim has no room, and one in 10^6 may go astray.
                 assert!(
@@ -40,7 +40,7 @@ fn h1_stretched_bodies_and_instances_keep_all_light() {
                 );
                 assert_eq!(report.non_finite, 0, "{what}");
                 let mean = Mean::of(&film);
-                let limit = standard_errors(24) * mean.error[1] + 1e-5;
+                let limit = sigma_limit(24) * mean.error[1] + 1e-5;
                 assert!((mean.value[1] - 1.0).abs() <= limit && mean.error[1] < 0.02, "{what}: {mean:?}");
             }
         }
@@ -49,7 +49,7 @@ fn h1_stretched_bodies_and_instances_keep_all_light() {
 
 /// The camera is exactly on the floor, on the wall of a room, on the surface of a glass ball or in the plane of a pane.
 #[test]
-fn h8_a_camera_on_a_surface_sees_what_there_is_and_no_nan() {
+fn h8_a_camera_on_a_surface_sees_the_scene_and_no_nan() {
     let white = "diffuse = { reflectance = 1 }";
     let glass = "dielectric = { index = 1.5 }";
     for (material, shape, position, look_at) in [
@@ -65,13 +65,13 @@ fn h8_a_camera_on_a_surface_sees_what_there_is_and_no_nan() {
             + "[render]\nsamples = 4\n"
             + &body("body", material, &[shape])
             + &environment(1.0);
-        let (film, report) = image(&text, SPLITTING);
+        let (film, report) = render_film(&text, SPLITTING);
         assert_eq!(report.non_finite, 0, "{shape} from {position:?}");
         // The start may count as being on either side: from inside glass, a sky of 1 is n^2. Roulette may raise a pixel
         // above that.
         let mean = Mean::of(&film);
         let (least, most) = if material == glass { (1.0, 2.25) } else { (0.0, 1.0) };
-        let room = standard_errors(7) * mean.error[1] + 1e-5;
+        let room = sigma_limit(7) * mean.error[1] + 1e-5;
         assert!((least - room..=most + room).contains(&mean.value[1]), "{shape} from {position:?}: {mean:?}");
         assert!(film.pixels.iter().all(|pixel| (0.0..=2.0 * most as f32).contains(&pixel.rgb[1])), "{shape}");
     }
@@ -91,7 +91,7 @@ fn h9_things_that_differ_by_18_orders_of_magnitude_share_a_scene() {
             + "[render]\nsamples = 64\n"
             + &body("body", material, &shapes)
             + &environment(1.0);
-        let (film, report) = image(&text, SPLITTING);
+        let (film, report) = render_film(&text, SPLITTING);
         assert_eq!((report.non_finite, report.unmatched), (0, 0));
         let near = film.pixels.iter().filter(|pixel| pixel.depth < 1e-7).count();
         let far = film.pixels.iter().filter(|pixel| (1e8..2e9).contains(&pixel.depth)).count();
@@ -115,11 +115,11 @@ fn h12_a_sphere_is_seen_at_every_size_that_is_allowed_and_refused_at_others() {
                 + &environment(1.0)
         };
         for material in ["diffuse = { reflectance = 1 }", "dielectric = { index = 1.5 }"] {
-            let (film, report) = image(&text(material), SPLITTING);
+            let (film, report) = render_film(&text(material), SPLITTING);
             assert_eq!((report.non_finite, report.unmatched), (0, 0), "radius {radius:e}");
             let mean = Mean::of(&film);
             let off = (mean.value[1] - 1.0).abs();
-            assert!(off <= standard_errors(12) * mean.error[1] + 1e-5, "radius {radius:e}: {mean:?}");
+            assert!(off <= sigma_limit(12) * mean.error[1] + 1e-5, "radius {radius:e}: {mean:?}");
             assert!(film.pixels.iter().all(|pixel| pixel.depth != DEPTH_OF_NOTHING), "radius {radius:e}");
         }
     }
@@ -127,6 +127,6 @@ fn h12_a_sphere_is_seen_at_every_size_that_is_allowed_and_refused_at_others() {
         let shape = format!("sphere = {{ center = [0, 0, 0], radius = {radius} }}");
         let text = view([0.0, 0.0, 4.0], [0.0; 3], 20.0, 4) + &body("body", "mirror = {}", &[&shape]);
         let refused = abbe::Scene::parse(&text, "").map(|_| ()).map_err(|error| error.to_string());
-        assert!(refused.is_err_and(|told| told.contains("radius")), "radius {radius}");
+        assert!(refused.is_err_and(|message| message.contains("radius")), "radius {radius}");
     }
 }

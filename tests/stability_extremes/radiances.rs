@@ -1,6 +1,6 @@
 //! Row H6: very weak and very strong light. A picture is proportional to its lights.
 
-use crate::support::scenes::{SINGLE_PATH, SPLITTING, body, image, view};
+use crate::support::scenes::{SINGLE_PATH, SPLITTING, body, render_film, view};
 
 /// Returns a scene with every kind of light and surface. All lights are multiplied by a factor.
 fn text(factor: f64) -> String {
@@ -32,12 +32,12 @@ fn text(factor: f64) -> String {
 #[test]
 fn h6_pictures_of_lights_of_1e30_and_1e_minus_30_are_those_of_1_to_the_last_bit() {
     for transport in [SPLITTING, SINGLE_PATH] {
-        let (film, report) = image(&text(1.0), transport);
+        let (film, report) = render_film(&text(1.0), transport);
         assert_eq!(report.non_finite, 0);
         assert!(film.pixels.iter().filter(|pixel| pixel.rgb[1] > 0.05).count() > 1000, "the scene is nearly black");
         for power in [96, 60, -60] {
             let factor = libm::exp2(f64::from(power));
-            let (scaled, counted) = image(&text(factor), transport);
+            let (scaled, counted) = render_film(&text(factor), transport);
             assert_eq!((counted.non_finite, counted.rays), (0, report.rays), "2^{power}");
             for (at, (scaled, pixel)) in scaled.pixels.iter().zip(&film.pixels).enumerate() {
                 let expected = pixel.rgb.map(|x| (f64::from(x) * factor) as f32);
@@ -46,7 +46,7 @@ fn h6_pictures_of_lights_of_1e30_and_1e_minus_30_are_those_of_1_to_the_last_bit(
         }
         // At 2^-100, products of small weights leave the normal range of f32 and lose their last digits.
         let factor = libm::exp2(-100.0);
-        let (scaled, _) = image(&text(factor), transport);
+        let (scaled, _) = render_film(&text(factor), transport);
         for (scaled, pixel) in scaled.pixels.iter().zip(&film.pixels) {
             for band in 0..3 {
                 let (found, expected) = (f64::from(scaled.rgb[band]) / factor, f64::from(pixel.rgb[band]));
@@ -77,7 +77,7 @@ fn h6_lights_of_1e30_and_1e_minus_30_share_a_scene() {
     let bright = lamp("bright", 3.0, "1e30");
     let dim = lamp("dim", -3.0, "1e-30");
     for transport in [SPLITTING, SINGLE_PATH] {
-        let (both, report) = image(&(room.clone() + &bright + &dim), transport);
+        let (both, report) = render_film(&(room.clone() + &bright + &dim), transport);
         assert_eq!(report.non_finite, 0);
         let lit = |from: f32, to: f32| both.pixels.iter().filter(|pixel| (from..to).contains(&pixel.rgb[1])).count();
         assert!(lit(1e26, 1.1e30) > 200, "{} bright pixels", lit(1e26, 1.1e30));

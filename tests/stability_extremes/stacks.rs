@@ -2,7 +2,7 @@
 
 use abbe::plan::plan;
 
-use crate::support::scenes::{Mean, SPLITTING, body, image, scene, standard_errors, view};
+use crate::support::scenes::{Mean, SPLITTING, body, render_film, scene, sigma_limit, view};
 
 const COUNT: u32 = 1000;
 
@@ -32,15 +32,15 @@ fn h5_stacks_of_a_hundred_and_of_a_thousand_panes_let_through_what_the_closed_fo
         assert_eq!(transport, SPLITTING);
         let r = ((index - 1.0) / (index + 1.0)).powi(2);
         let expected = (1.0 - r) / (1.0 + (2.0 * f64::from(count) - 1.0) * r);
-        let (film, report) = image(&text, transport);
+        let (film, report) = render_film(&text, transport);
         let mean = Mean::of(&film);
         let rays = report.rays as f64 / report.samples as f64;
         println!("H5: {count} panes: {:.6} +- {:.1e} for {expected:.6}, {rays:.0} rays", mean.value[0], mean.error[0]);
         assert_eq!((report.unmatched, report.non_finite, report.stopped), (0, 0, 0.0));
         let rounding = 2.0 * f64::from(count) * f64::from(f32::EPSILON);
         let off = (mean.value[0] - expected).abs();
-        assert!(off <= standard_errors(2) * mean.error[0] + rounding, "{count} panes: {mean:?} for {expected}");
-        assert!(mean.worst_error([expected; 3]) < 0.1, "{count} panes: {mean:?}");
+        assert!(off <= sigma_limit(2) * mean.error[0] + rounding, "{count} panes: {mean:?} for {expected}");
+        assert!(mean.worst_relative_error([expected; 3]) < 0.1, "{count} panes: {mean:?}");
     }
 }
 
@@ -53,7 +53,7 @@ fn h5_a_thousand_bodies_in_each_other_are_one() {
         .collect();
     let nested: Vec<&str> = nested.iter().map(String::as_str).collect();
     let text = lit(&body("glass", "dielectric = { index = 1.5 }", &nested), 4, 1);
-    let (film, report) = image(&text, SPLITTING);
+    let (film, report) = render_film(&text, SPLITTING);
     let expected = 0.96 / 1.04;
     assert_eq!((report.unmatched, report.stopped), (0, 0.0));
     // Roulette ends one long path in a thousand, and light that is reflected inside returns one time in 33 with a
@@ -75,11 +75,11 @@ fn h5_light_that_wanders_in_a_stack_keeps_its_energy() {
         + "[render]\nsamples = 4\n"
         + &body("glass", "dielectric = { index = 1.5 }", &panes)
         + "[[light]]\nenvironment.radiance = 1\n";
-    let (film, report) = image(&text, SPLITTING);
+    let (film, report) = render_film(&text, SPLITTING);
     assert_eq!((report.unmatched, report.non_finite), (0, 0));
     let mean = Mean::of(&film);
     let off = (mean.value[1] - 1.0).abs();
     // The light that the safety stop took from paths caught for good by total reflection is counted.
-    assert!(off <= standard_errors(1) * mean.error[1] + report.stopped * 2.25 + 1e-5, "{mean:?}, {}", report.stopped);
+    assert!(off <= sigma_limit(1) * mean.error[1] + report.stopped * 2.25 + 1e-5, "{mean:?}, {}", report.stopped);
     assert!(mean.error[1] < 0.1 && report.stopped < 0.01, "{mean:?}, {} stopped", report.stopped);
 }

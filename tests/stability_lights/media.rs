@@ -5,7 +5,9 @@ use std::path::Path;
 use abbe::material::Interface;
 use abbe::scene::Source;
 
-use crate::support::scenes::{EVERY_BRANCH, GROUND, SPLITTING, body, environment, image, refusal_in, scene, view};
+use crate::support::scenes::{
+    EVERY_BRANCH, GROUND, SPLITTING, body, environment, first_mistake, render_film, scene, view,
+};
 
 /// Returns the reflectance for diffuse light from outside of a medium: Walsh 1926, *The Reflection Factor of a Polished
 /// Glass Surface for Diffused Light*.
@@ -42,9 +44,9 @@ fn m2_clear_bodies_that_share_a_surface_are_refused_and_those_that_overlap_are_n
             + &body("water", "dielectric = { index = 1.333 }", &[&water])
             + &environment(1.0)
     };
-    assert!(refusal_in(Path::new(""), &text(1.0)).message.contains("partly coincide"));
+    assert!(first_mistake(Path::new(""), &text(1.0)).message.contains("partly coincide"));
     for half in [0.99, 1.01] {
-        let (_, report) = image(&text(half), EVERY_BRANCH);
+        let (_, report) = render_film(&text(half), EVERY_BRANCH);
         assert_eq!(report.unmatched, 0, "{half}");
     }
 }
@@ -59,13 +61,13 @@ fn m2_two_of_many_beads_above_a_floor_are_refused_that_share_a_surface() {
     let floor = body("floor", "diffuse.reflectance = 0.5", &["plane = { point = [0, 0, 0], normal = [0, 1, 0] }"]);
     let text =
         view([0.0, 3.0, 5.0], [0.0; 3], 30.0, 4) + &bead + &format!("instances = [{}]\n", places.join(", ")) + &floor;
-    assert!(refusal_in(Path::new(""), &text).message.contains("partly coincide"));
+    assert!(first_mistake(Path::new(""), &text).message.contains("partly coincide"));
 }
 
 /// One side of a glass block and a table below it lie in one plane but are divided into triangles in different ways.
 /// Rounding would decide for each ray which is hit first.
 #[test]
-fn t6_sheets_in_one_plane_are_told_of_where_light_must_cross_them_in_order() {
+fn t6_sheets_in_one_plane_are_reported_where_light_must_cross_them_in_order() {
     let block = |y: f64| {
         format!(
             "mesh = {{ points = [[-1, {y:?}, -1], [1, {y:?}, -1], [1, {y:?}, 1], [-1, {y:?}, 1], [0, 2, 0]], faces = \
@@ -82,7 +84,7 @@ fn t6_sheets_in_one_plane_are_told_of_where_light_must_cross_them_in_order() {
     assert!(scene(&text(0.0)).warnings.iter().any(|warning| warning.contains("lies exactly on")));
     for y in [1e-6, -1e-6] {
         assert_eq!(scene(&text(y)).warnings, [""; 0]);
-        let (_, report) = image(&text(y), SPLITTING);
+        let (_, report) = render_film(&text(y), SPLITTING);
         assert_eq!((report.unmatched, report.non_finite), (0, 0), "{y}");
     }
 }
@@ -124,12 +126,12 @@ fn m5_a_medium_that_was_never_entered_is_counted_and_left_as_if_nothing_were_the
             + &body("glass", "dielectric = { index = 1.5 }", &[&mesh])
             + &environment(1.0)
     };
-    let (film, closed) = image(&text(&faces), SPLITTING);
+    let (film, closed) = render_film(&text(&faces), SPLITTING);
     assert_eq!((closed.unmatched, closed.non_finite), (0, 0));
     assert!(closed.rays > 100_000, "{} rays", closed.rays);
     let lightless = |film: &abbe::film::Film| film.pixels.iter().filter(|pixel| pixel.rgb[0] < 0.5).count();
     assert_eq!(lightless(&film), 0);
-    let (film, open) = image(&text(&faces[..faces.len() * 3 / 4]), SPLITTING);
+    let (film, open) = render_film(&text(&faces[..faces.len() * 3 / 4]), SPLITTING);
     assert!(open.unmatched > 100, "{} rays leave what they never entered", open.unmatched);
     assert_eq!(open.non_finite, 0);
     assert!(film.pixels.iter().all(|pixel| pixel.rgb.iter().all(|x| (0.0..=16.0).contains(x))));

@@ -23,21 +23,21 @@ fn tetrahedron(outward: bool) -> String {
     format!("mesh = {{ points = [[2, 0.5, 0], [3, 0.5, 0], [2, 1.5, 0], [2, 0.5, 1]], faces = {faces} }}")
 }
 
-fn assert_warns(text: &str, wanted: &[&str]) {
+fn assert_warns(text: &str, expected: &[&str]) {
     let warnings = scene(text).warnings;
-    assert_eq!(warnings.len(), wanted.len(), "{warnings:?} in\n{text}");
-    for (warning, wanted) in warnings.iter().zip(wanted) {
-        assert!(warning.contains(wanted), "{warning}\ndoes not say\n{wanted}\nin\n{text}");
+    assert_eq!(warnings.len(), expected.len(), "{warnings:?} in\n{text}");
+    for (warning, expected) in warnings.iter().zip(expected) {
+        assert!(warning.contains(expected), "{warning}\ndoes not say\n{expected}\nin\n{text}");
     }
 }
 
 #[test]
-fn l6_lights_that_light_nothing_in_sight_are_told_of_with_the_cure() {
+fn l6_lights_that_light_nothing_in_sight_are_reported_with_a_remedy() {
     let quad = |v: i32| format!("quad = {{ center = [0, 5, 0], u = [1, 0, 0], v = [0, 0, {v}] }}");
     let housing = body("gray", "diffuse = { reflectance = 0.5 }", &["cube = { center = [0, 6, 0], size = 4 }"]);
     let light = |light: &str| format!("[[light]]\n{light}\n");
     let closed = "sphere = { center = [0, 0, 0], radius = 30 }";
-    for (more, wanted) in [
+    for (more, expected) in [
         (body("lamp", LAMP, &[&quad(-1)]), "shines away from every object"),
         (body("lamp", LAMP, &[&quad(-1)]) + &housing, "lights nothing that the camera sees"),
         (body("lamp", LAMP, &[&tetrahedron(false)]), "shines only into its own inside"),
@@ -60,13 +60,13 @@ fn l6_lights_that_light_nothing_in_sight_are_told_of_with_the_cure() {
             "light 1 (environment) lights nothing",
         ),
     ] {
-        assert_warns(&stage(&more), &[wanted]);
+        assert_warns(&stage(&more), &[expected]);
     }
 }
 
 /// Lights that light little, or only indirectly, cause no warning.
 #[test]
-fn l6_lights_of_which_something_may_be_seen_are_not_told_of() {
+fn l6_lights_of_which_something_may_be_seen_are_not_reported() {
     let light = |light: &str| format!("[[light]]\n{light}\n");
     let spot = |toward: &str, angle: f64| {
         light(&format!("spot = {{ position = [0, 5, 0], toward = {toward}, cone_angle = {angle:?}, intensity = 9 }}"))
@@ -116,7 +116,7 @@ fn l6_lights_of_which_something_may_be_seen_are_not_told_of() {
 }
 
 #[test]
-fn a_camera_that_sees_nothing_or_is_inside_an_opaque_body_is_told_of() {
+fn a_camera_that_sees_nothing_or_is_inside_an_opaque_body_is_reported() {
     let white = |shape: &str| body("white", "diffuse = { reflectance = 0.7 }", &[shape]);
     let light = "[[light]]\npoint = { position = [0, 5, 0], intensity = 9 }\n";
     let away = view([0.0, 2.0, 8.0], [0.0, 2.0, 20.0], 40.0, 16) + &white(BALL);
@@ -140,7 +140,7 @@ fn a_camera_that_sees_nothing_or_is_inside_an_opaque_body_is_told_of() {
 }
 
 #[test]
-fn m6_a_clear_mesh_that_is_inside_out_is_told_of_and_a_bubble_is_not() {
+fn m6_a_clear_mesh_that_is_inside_out_is_reported_and_a_bubble_is_not() {
     let glass = |shapes: &[&str]| body("glass", "dielectric = { index = 1.5 }", shapes) + &environment(1.0);
     let larger = "sphere = { center = [2.2, 2.7, 0.2], radius = 2.5 }";
     assert_warns(&stage(&glass(&[&tetrahedron(true)])), &[]);
@@ -156,7 +156,7 @@ fn m6_a_clear_mesh_that_is_inside_out_is_told_of_and_a_bubble_is_not() {
 
 /// Flat glass that nothing closes is a half space of glass.
 #[test]
-fn flat_glass_that_nothing_closes_is_told_of() {
+fn flat_glass_that_nothing_closes_is_reported() {
     let glass = |shapes: &[&str]| body("glass", "dielectric = { index = 1.5 }", shapes) + &environment(1.0);
     let quad = |center: &str, u: &str, v: &str| format!("quad = {{ center = {center}, u = {u}, v = {v} }}");
     let front = quad("[3, 2, 0.5]", "[0.5, 0, 0]", "[0, 0.5, 0]");
@@ -180,15 +180,15 @@ fn flat_glass_that_nothing_closes_is_told_of() {
 
 /// A light or a camera exactly in a surface is on neither side of it.
 #[test]
-fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
+fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_reported() {
     let ceiling = |shape: &str| body("ceiling", "diffuse = { reflectance = 0.5 }", &[shape]);
     let point = |y: f64| format!("[[light]]\npoint = {{ position = [0.3, {y:?}, 0.2], intensity = 9 }}\n");
     let spot = "[[light]]\nspot = { position = [0, 5, 0], toward = [0, -1, 0], cone_angle = 30, intensity = 9 }\n";
     let flat = "quad = { center = [0, 5, 0], u = [3, 0, 0], v = [0, 0, 3] }";
     for shape in [flat, "plane = { point = [0, 5, 0], normal = [0, -1, 0] }", "cube = { center = [0, 6, 0], size = 2 }"]
     {
-        let told = "light 1 (point) lies exactly on the surface of object 3";
-        assert_warns(&stage(&(ceiling(shape) + &point(5.0))), &[told]);
+        let message = "light 1 (point) lies exactly on the surface of object 3";
+        assert_warns(&stage(&(ceiling(shape) + &point(5.0))), &[message]);
         assert_warns(&stage(&(ceiling(shape) + &point(5.0 - 1e-9))), &[]);
         assert_warns(&stage(&(ceiling(shape) + spot)), &["light 1 (spot) lies exactly on the surface of object 3"]);
     }
@@ -199,22 +199,22 @@ fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
             + &body("white", "diffuse = { reflectance = 0.7 }", &[GROUND, BALL])
             + &both;
         let warnings = scene(&text).warnings;
-        let told = "which emits light, lies exactly on object";
-        assert!(warnings.iter().any(|warning| warning.contains(told)), "{warnings:?}");
+        let message = "which emits light, lies exactly on object";
+        assert!(warnings.iter().any(|warning| warning.contains(message)), "{warnings:?}");
     }
     assert_warns(&stage(&(ceiling(flat) + &lamp(4.999))), &[]);
     let water = |y: f64| {
         let size = 2.0 * y;
         body("water", "dielectric = { index = 1.33 }", &[&format!("cube = {{ center = [0, 0, 8], size = {size:?} }}")])
     };
-    let told = "the camera lies exactly on the surface of object 3, neither inside nor outside";
-    assert_warns(&stage(&(water(2.0) + &environment(1.0))), &[told]);
+    let message = "the camera lies exactly on the surface of object 3, neither inside nor outside";
+    assert_warns(&stage(&(water(2.0) + &environment(1.0))), &[message]);
     assert_warns(&stage(&(water(2.0 + 1e-9) + &environment(1.0))), &[]);
 }
 
 /// Nearly every direction that is sampled for this sky leads to its sun, which is behind the only wall.
 #[test]
-fn l6_a_sky_that_lights_a_wall_from_before_is_not_told_of_for_its_sun_behind() {
+fn l6_a_sky_that_lights_a_wall_from_the_front_is_not_reported_for_its_sun_behind() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("sky.exr");
     let at = |x: usize, y: usize| if (x, y) == (0, 16) { (1e7, 1e7, 1e7) } else { (0.5, 0.5, 0.5) };

@@ -10,7 +10,7 @@ use crate::support::arrivals::{context, material};
 use crate::support::exact::Exact;
 use crate::support::larger::larger;
 use crate::support::random::Random;
-use crate::support::scenes::{EVERY_BRANCH, body, environment, image, view};
+use crate::support::scenes::{EVERY_BRANCH, body, environment, render_film, view};
 
 /// Returns reflectance and transmittance with 31 digits, from the same rounded inputs.
 fn truth(n1: f64, n2: f64, c1: f64) -> (Exact, Exact) {
@@ -203,13 +203,13 @@ fn d4_an_index_matched_body_is_invisible_to_the_bit() {
     ];
     let ellipsoid = "[[object]]\nshape.sphere = { center = [0, 0, 0], radius = 1 }\nmaterial = \"air\"\n\
                      transform = [{ scale = [1.4, 0.7, 0.5] }, { rotate = { axis = [0, 0, 1], degrees = 20 } }]\n";
-    let (empty, _) = image(&backdrop, EVERY_BRANCH);
+    let (empty, _) = render_film(&backdrop, EVERY_BRANCH);
     assert!(empty.pixels.iter().any(|pixel| pixel.rgb[0] > 5.0), "the backdrop shows nothing");
     let inside_block =
         body("core", "dielectric = { index = 1.5 }", &["sphere = { center = [-0.9, 0, -1], radius = 0.5 }"]);
     let air = |shapes: &[&str]| body("air", "dielectric = { index = 1 }", shapes);
     for added in [air(&shapes), format!("{}{ellipsoid}", air(&[])), inside_block] {
-        let (film, report) = image(&format!("{backdrop}{added}"), EVERY_BRANCH);
+        let (film, report) = render_film(&format!("{backdrop}{added}"), EVERY_BRANCH);
         assert_eq!(report.unmatched, 0);
         for (at, (with, without)) in film.pixels.iter().zip(&empty.pixels).enumerate() {
             assert_eq!(with.rgb.map(f32::to_bits), without.rgb.map(f32::to_bits), "pixel {at} with {added}");

@@ -10,7 +10,7 @@ use crate::support::random::Random;
 const INDEX: f64 = 1.5;
 pub const EVENTS: u64 = 200_000;
 /// Number of crossings after which a ray that is trapped by total reflection is abandoned.
-const MOST: u32 = 40;
+const MAX_CROSSINGS: u32 = 40;
 
 /// Counts of what happened to the rays.
 #[derive(Clone, Copy, Default, PartialEq, Debug)]
@@ -42,7 +42,7 @@ fn scatter(direction: DVec3, normal: DVec3, leaving: bool, random: &mut Random) 
 /// Follows a ray from outside until it leaves for good. A convex body is entered only once.
 pub fn follow(body: &Shape, mut ray: Ray, size: f64, random: &mut Random, tally: &mut Tally) {
     let mut inside = false;
-    for event in 0..MOST {
+    for event in 0..MAX_CROSSINGS {
         let Some(intersection) = body.intersect(&ray, f64::INFINITY) else {
             tally.wrong += u64::from(inside);
             return;
@@ -90,7 +90,7 @@ fn tally(
 }
 
 /// A steepness that leaves nothing out.
-pub const ALL: f64 = -2.0;
+pub const ANY_STEEPNESS: f64 = -2.0;
 
 /// Size, and coordinate offset in units of size.
 const PLACES: [(f64, f64); 6] = [(1.0, 0.0), (1e-3, 0.0), (1e3, 0.0), (1.0, 100.0), (1e-6, 0.0), (1.0, 1e4)];
@@ -109,7 +109,7 @@ fn check_mesh(aim: Aim) {
         let center = OFFSET * offset * size;
         let points: Vec<DVec3> = points.into_iter().map(|p| (p + OFFSET * offset) * size).collect();
         let body = closed_mesh(points.clone(), faces.clone());
-        let steepness = if matches!(aim, Aim::Anywhere) { ALL } else { 0.3 };
+        let steepness = if matches!(aim, Aim::Anywhere) { ANY_STEEPNESS } else { 0.3 };
         let result = tally((&body, center, size), EVENTS, steepness, |random| {
             let [a, b, _] = faces[(random.number() * faces.len() as f64) as usize].map(|i| points[i as usize]);
             match aim {
@@ -159,7 +159,8 @@ fn check_unit_body(body: &Shape, target: impl Fn(Aim, &mut Random) -> DVec3) {
             let map = map.then(&Transform::scale(DVec3::splat(size))).then(&Transform::translate(center));
             let placed = body.transformed(&map);
             for aim in [Aim::Anywhere, Aim::Edge, Aim::Corner] {
-                let result = tally((&placed, center, size), 60_000, ALL, |random| map.point(target(aim, random)));
+                let result =
+                    tally((&placed, center, size), 60_000, ANY_STEEPNESS, |random| map.point(target(aim, random)));
                 assert_eq!(result.wrong, 0, "aimed at {aim:?}, form {form}, size {size:e} at {center}: {result:?}");
             }
         }
@@ -203,7 +204,7 @@ fn x4_rays_enter_and_leave_a_glass_sphere_by_turns() {
     for (size, offset) in PLACES {
         let center = OFFSET * offset * size;
         let sphere = Shape::Sphere(Sphere::new(center, size));
-        let result = tally((&sphere, center, size), EVENTS, ALL, |random| center + random.direction() * size);
+        let result = tally((&sphere, center, size), EVENTS, ANY_STEEPNESS, |random| center + random.direction() * size);
         assert_eq!(result.wrong, 0, "size {size:e}, offset {offset:e}: {result:?}");
     }
 }
@@ -222,7 +223,7 @@ fn s6_scaling_a_glass_body_by_a_power_of_two_changes_no_bit_of_any_path() {
         for exponent in [0, -40, -20, 20, 40] {
             let size = libm::exp2(f64::from(exponent));
             let scaled = body.transformed(&Transform::scale(DVec3::splat(size)));
-            let result = tally((&scaled, DVec3::ZERO, size), 20_000, ALL, |random| {
+            let result = tally((&scaled, DVec3::ZERO, size), 20_000, ANY_STEEPNESS, |random| {
                 random.direction() * 0.4 * size * random.number()
             });
             assert_eq!(result.wrong, 0);

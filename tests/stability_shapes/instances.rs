@@ -10,7 +10,7 @@ use super::OFFSET;
 use super::glass::{Aim, EVENTS, Tally, follow, maps};
 use crate::support::bodies::{ball, closed_mesh};
 use crate::support::random::Random;
-use crate::support::scenes::{SINGLE_PATH, body, environment, image, view};
+use crate::support::scenes::{SINGLE_PATH, body, environment, render_film, view};
 
 /// Returns the ball of `bodies`, placed by a map.
 fn instance(map: &Transform) -> Shape {
@@ -174,7 +174,7 @@ fn copies_whose_own_space_is_beyond_32_bits_are_met_as_others_are() {
             )
             + &format!("instances = [[{{ scale = {scale:e} }}]]\n")
             + &environment(1.0);
-        let (film, report) = image(&text, SINGLE_PATH);
+        let (film, report) = render_film(&text, SINGLE_PATH);
         assert_eq!(report.non_finite, 0, "{radius:e} at {scale:e} from {away:e}");
         let sum: f64 = film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).sum();
         sum / film.pixels.len() as f64

@@ -91,7 +91,7 @@ fn on_shared_edge([x, _]: [f64; 2]) -> [f64; 2] {
     [x, 1.0 - x]
 }
 
-fn first(corners: [DVec3; 3], _: DVec3) -> Shape {
+fn first_triangle(corners: [DVec3; 3], _: DVec3) -> Shape {
     Shape::Triangle(Triangle::new(corners))
 }
 
@@ -108,7 +108,7 @@ fn hits_neighbor(departure: &Departure) -> bool {
 #[test]
 fn x1_without_an_offset_half_of_all_new_rays_hit_the_surface_that_they_leave() {
     let (mut own, mut all) = (0, 0);
-    departures(SETTINGS[0], anywhere, first, |shape, departure| {
+    departures(SETTINGS[0], anywhere, first_triangle, |shape, departure| {
         let origin = departure.context.at(departure.t);
         own += usize::from(hits(shape, &Ray { origin, direction: departure.leaving.direction }));
         all += 1;
@@ -121,7 +121,7 @@ fn x1_without_an_offset_half_of_all_new_rays_hit_the_surface_that_they_leave() {
 #[test]
 fn x2_a_sheet_a_thousandth_of_the_size_away_is_seen_at_every_scale() {
     for setting in SETTINGS {
-        departures(setting, anywhere, first, |_, departure| {
+        departures(setting, anywhere, first_triangle, |_, departure| {
             let side = departure.point.normal * departure.leaving.direction.dot(departure.point.normal).signum();
             let sheet = Shape::Plane(Plane::new(departure.corners[0] + side * 1e-3 * setting.0, side));
             // Nearly parallel rays hit the sheet far away, or never because of rounding.
@@ -136,7 +136,7 @@ fn x3_no_ray_hits_the_triangles_that_it_leaves_and_the_offset_is_a_few_roundings
     for setting in SETTINGS {
         let (size, offset, distance) = setting;
         let (mut own, mut highest) = (0, 0f64);
-        departures(setting, anywhere, first, |shape, departure| {
+        departures(setting, anywhere, first_triangle, |shape, departure| {
             own += usize::from(hits(shape, &departure.leaving) || hits_neighbor(departure));
             highest = larger(highest, departure.height());
         });
@@ -175,7 +175,7 @@ fn x3_no_ray_hits_the_plane_quad_or_disc_that_it_leaves() {
 #[test]
 fn x6_rays_do_not_hit_a_neighbor_in_the_plane_that_they_leave() {
     for setting in [(1.0, 0.0, 5.0), (1.0, 1e3, 5.0), (1.0, 1e5, 5.0)] {
-        departures(setting, on_shared_edge, first, |_, departure| {
+        departures(setting, on_shared_edge, first_triangle, |_, departure| {
             assert!(!hits_neighbor(departure), "{setting:?}: {:?}", departure.leaving);
         });
     }
@@ -184,7 +184,7 @@ fn x6_rays_do_not_hit_a_neighbor_in_the_plane_that_they_leave() {
 #[test]
 fn x7_the_distance_of_the_camera_does_not_move_new_rays_away() {
     let mut highest = 0f64;
-    departures((1.0, 1.0, 1e5), anywhere, first, |_, departure| highest = highest.max(departure.height()));
+    departures((1.0, 1.0, 1e5), anywhere, first_triangle, |_, departure| highest = highest.max(departure.height()));
     println!("X7: moved by {highest:.1e} s");
     // The row allows 1e-9 s. Rays start from points that are computed from the triangle's corners, so the distance does
     // not matter at all.

@@ -110,12 +110,12 @@ fn s4_rays_that_bounce_off_a_sphere_as_large_as_a_wall_cross_the_room() {
         let target = DVec3::new(1.0, random.between(1.0, 80.0), random.between(1.0, 160.0));
         let origin = in_the_room(&mut random);
         let ray = Ray::new(origin, target - origin);
-        let point = meet(&shape, &ray);
+        let point = surface_point(&shape, &ray);
         check_inward(&shape, WALL, &point, &mut random);
     }
 }
 
-fn meet(shape: &Shape, ray: &Ray) -> SurfacePoint {
+fn surface_point(shape: &Shape, ray: &Ray) -> SurfacePoint {
     let intersection = shape.intersect(ray, f64::INFINITY).expect("the ray was aimed at the sphere");
     shape.point(ray, &intersection)
 }
@@ -136,17 +136,17 @@ fn check_inward(shape: &Shape, (center, radius): (DVec3, f64), point: &SurfacePo
 fn s5_directions_are_unit_vectors_within_2_roundings() {
     let mut random = Random::new(5);
     let off_unit = |v: DVec3| (ExactVector::from(v).length() - 1.0.into()).abs().rounded() / UNIT_ROUNDOFF;
-    let (mut of_rays, mut of_normals) = (0f64, 0f64);
+    let (mut ray_error, mut normal_error) = (0f64, 0f64);
     for _ in 0..200_000 {
         let size = libm::exp10(random.between(-100.0, 100.0));
-        of_rays = larger(of_rays, off_unit(Ray::new(DVec3::ZERO, random.direction() * size).direction));
+        ray_error = larger(ray_error, off_unit(Ray::new(DVec3::ZERO, random.direction() * size).direction));
         let factors = DVec3::new(random.between(0.1, 3.0), random.between(-3.0, -0.1), random.between(0.1, 3.0));
         let map = Transform::rotate(random.direction(), random.between(0.0, 360.0)).then(&Transform::scale(factors));
-        of_normals = larger(of_normals, off_unit(map.normal(random.direction())));
+        normal_error = larger(normal_error, off_unit(map.normal(random.direction())));
     }
-    println!("S5: rays {of_rays:.2} u, normals {of_normals:.2} u");
-    assert!(of_rays <= 2.0, "rays: {of_rays} u");
-    assert!(of_normals <= 2.0, "normals: {of_normals} u");
+    println!("S5: rays {ray_error:.2} u, normals {normal_error:.2} u");
+    assert!(ray_error <= 2.0, "rays: {ray_error} u");
+    assert!(normal_error <= 2.0, "normals: {normal_error} u");
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn x5_rays_that_leave_a_sphere_outward_miss_it_and_inward_meet_its_far_side() {
         for _ in 0..RAYS {
             let origin = center + random.direction() * distance * radius;
             let ray = Ray::new(origin, center + random.direction() * 0.9 * radius - origin);
-            let point = meet(&shape, &ray);
+            let point = surface_point(&shape, &ray);
             check_inward(&shape, (center, radius), &point, &mut random);
             let direction = random.direction();
             let outward = if direction.dot(point.normal) < 0.0 { -direction } else { direction };

@@ -10,7 +10,7 @@ use abbe::trace::prepare;
 use super::scenes::{SINGLE_PATH, method, scene, view};
 
 /// Materials that layered materials refer to.
-pub const PARTS: &str = "[material.white]\ndiffuse = { reflectance = 1 }\n\
+pub const BASE_MATERIALS: &str = "[material.white]\ndiffuse = { reflectance = 1 }\n\
     [material.mirror]\nmirror = { reflectance = 1 }\n\
     [material.pane]\nthin = { index = 1.5 }\n\
     [material.smooth]\nplastic = { reflectance = 1 }\n\
@@ -24,7 +24,8 @@ pub const LOSSLESS: &str = "n = 1e-6, k = 100";
 /// Parses a material and prepares it for three bands.
 pub fn material(text: &str) -> Material<Table> {
     let object = "[[object]]\nshape.sphere = { center = [0, 0, 0], radius = 1 }\nmaterial = \"tested\"\n";
-    let text = view([0.0, 0.0, 9.0], [0.0; 3], 1.0, 1) + PARTS + &format!("[material.tested]\n{text}\n{object}");
+    let text =
+        view([0.0, 0.0, 9.0], [0.0; 3], 1.0, 1) + BASE_MATERIALS + &format!("[material.tested]\n{text}\n{object}");
     let scene = scene(&text);
     prepare(&scene, method(&scene, SINGLE_PATH)).scene().material_of(0).clone()
 }
@@ -32,8 +33,8 @@ pub fn material(text: &str) -> Material<Table> {
 pub const NORMAL: DVec3 = DVec3::new(0.6, -0.48, 0.64);
 
 /// Returns a unit vector whose angle to `NORMAL` has the given cosine.
-pub fn toward(cos: f64, azimuth: f64) -> DVec3 {
-    Frame::about(NORMAL).to_world(about_z(cos, azimuth)).normalize()
+pub fn direction_at(cos: f64, azimuth: f64) -> DVec3 {
+    Frame::about(NORMAL).to_world(direction_about_z(cos, azimuth)).normalize()
 }
 
 /// The three bands of [`material`].
@@ -60,7 +61,7 @@ pub fn context<const N: usize>(draw: &Draw<N>, wo: DVec3, index: f64) -> Scatter
 }
 
 /// Returns a unit vector whose angle to the z axis has the given cosine.
-pub fn about_z(cos: f64, azimuth: f64) -> DVec3 {
+pub fn direction_about_z(cos: f64, azimuth: f64) -> DVec3 {
     let (sin, (y, x)) = ((1.0 - cos * cos).max(0.0).sqrt(), libm::sincos(azimuth));
     DVec3::new(sin * x, sin * y, cos)
 }
@@ -69,14 +70,14 @@ pub fn about_z(cos: f64, azimuth: f64) -> DVec3 {
 /// mean with the standard error that independent draws would have.
 pub fn furnace(material: &Material<Table>, context: &ScatterContext<4>, draws: u32) -> [[f64; 2]; 3] {
     let (mut sums, mut branches) = ([[0.0; 2]; 3], Vec::new());
-    for u in points(draws) {
+    for u in hammersley_points(draws) {
         material.scatter(context, u, &mut branches);
-        let mut shown = [0.0; 3];
+        let mut total = [0.0; 3];
         for branch in branches.drain(..) {
-            (0..3).for_each(|band| shown[band] += f64::from(branch.share[band]) / branch.eta_scale);
+            (0..3).for_each(|band| total[band] += f64::from(branch.share[band]) / branch.eta_scale);
         }
-        for (sum, shown) in sums.iter_mut().zip(shown) {
-            *sum = [sum[0] + shown / f64::from(draws), sum[1] + shown * shown / f64::from(draws)];
+        for (sum, total) in sums.iter_mut().zip(total) {
+            *sum = [sum[0] + total / f64::from(draws), sum[1] + total * total / f64::from(draws)];
         }
     }
     let straight =
@@ -88,6 +89,6 @@ pub fn furnace(material: &Material<Table>, context: &ScatterContext<4>, draws: u
 }
 
 /// Returns the Hammersley points in the unit square.
-pub fn points(count: u32) -> impl Iterator<Item = [f64; 2]> {
+pub fn hammersley_points(count: u32) -> impl Iterator<Item = [f64; 2]> {
     (0..count).map(move |i| [(f64::from(i) + 0.5) / f64::from(count), f64::from(i.reverse_bits()) / 4_294_967_296.0])
 }

@@ -3,7 +3,7 @@
 /// Significance of all tests of one kind taken together.
 const SIGNIFICANCE: f64 = 0.01;
 /// Expected count below which bins are pooled.
-const LEAST: f64 = 5.0;
+const MIN_EXPECTED: f64 = 5.0;
 
 /// Panics if the counts in bins deviate from their probabilities by more than chance allows, in one of `tests` tests.
 ///
@@ -14,18 +14,21 @@ pub fn check(name: &str, counts: &[u64], probabilities: &[f64], tests: u32) {
     let (mut statistic, mut bins) = (0.0, 0u32);
     for (&count, &probability) in counts.iter().zip(probabilities) {
         let (count, expected) = (count as f64, probability * total);
-        if expected < LEAST {
+        if expected < MIN_EXPECTED {
             pooled = (pooled.0 + count, pooled.1 + expected);
         } else {
             statistic += (count - expected) * (count - expected) / expected;
             bins += 1;
         }
     }
-    statistic += (pooled.0 - pooled.1) * (pooled.0 - pooled.1) / pooled.1.max(LEAST);
+    statistic += (pooled.0 - pooled.1) * (pooled.0 - pooled.1) / pooled.1.max(MIN_EXPECTED);
     let chance = upper_tail(statistic, f64::from(bins - 1));
-    let least = -libm::expm1(libm::log1p(-SIGNIFICANCE) / f64::from(tests));
-    println!("{name}: chi-squared {statistic:.1} in {bins} bins, chance {chance:.4}, least {least:.5}");
-    assert!(chance >= least, "{name}: chi-squared {statistic:.1} in {bins} bins has chance {chance:.2e} < {least:.2e}");
+    let min_chance = -libm::expm1(libm::log1p(-SIGNIFICANCE) / f64::from(tests));
+    println!("{name}: chi-squared {statistic:.1} in {bins} bins, chance {chance:.4}, least {min_chance:.5}");
+    assert!(
+        chance >= min_chance,
+        "{name}: chi-squared {statistic:.1} in {bins} bins has chance {chance:.2e} < {min_chance:.2e}"
+    );
 }
 
 /// Returns the probability of a greater chi-squared with many degrees of freedom: Wilson & Hilferty 1931.

@@ -32,8 +32,8 @@ impl Exact {
             return Self::ZERO;
         }
         let root = self.high.sqrt();
-        let left = self - product(root, root);
-        quick_sum(root, left.high / (2.0 * root))
+        let remainder = self - product(root, root);
+        quick_sum(root, remainder.high / (2.0 * root))
     }
 }
 
@@ -46,8 +46,8 @@ impl From<f64> for Exact {
 /// Adds a and b without error (Knuth 1969, theorem B of section 4.2.2).
 fn sum(a: f64, b: f64) -> Exact {
     let high = a + b;
-    let of_b = high - a;
-    Exact { high, low: (a - (high - of_b)) + (b - of_b) }
+    let b_rounded = high - a;
+    Exact { high, low: (a - (high - b_rounded)) + (b - b_rounded) }
 }
 
 /// Adds a and b without error if |a| >= |b| (Dekker 1971).
@@ -103,9 +103,9 @@ impl Div for Exact {
     /// Long division with three digits of 53 bits each.
     fn div(self, other: Self) -> Self {
         let first = self.high / other.high;
-        let left = self - other * first.into();
-        let second = left.high / other.high;
-        let third = (left - other * second.into()).high / other.high;
+        let remainder = self - other * first.into();
+        let second = remainder.high / other.high;
+        let third = (remainder - other * second.into()).high / other.high;
         quick_sum(first, second) + third.into()
     }
 }

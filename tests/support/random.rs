@@ -1,6 +1,6 @@
 //! Random numbers that are the same on every machine.
 
-use abbe::math::{DVec3, ball_surface};
+use abbe::math::{DVec3, sample_sphere};
 
 /// A stream of independent random numbers.
 ///
@@ -38,16 +38,16 @@ impl Random {
     /// bits flipped.
     pub fn damaged(&mut self, whole: &[u8], turn: usize) -> Vec<u8> {
         let mut bytes = whole.to_vec();
-        let mut within = |most: usize| (self.number() * most as f64) as usize;
+        let mut random_below = |most: usize| (self.number() * most as f64) as usize;
         match turn % 3 {
-            0 => bytes.truncate(within(whole.len())),
+            0 => bytes.truncate(random_below(whole.len())),
             1 => {
-                let at = within(whole.len().min(600));
-                bytes[at] = within(256) as u8;
+                let at = random_below(whole.len().min(600));
+                bytes[at] = random_below(256) as u8;
             }
             _ => (0..4).for_each(|_| {
-                let at = within(whole.len());
-                bytes[at] ^= 1 << within(8);
+                let at = random_below(whole.len());
+                bytes[at] ^= 1 << random_below(8);
             }),
         }
         bytes
@@ -55,6 +55,6 @@ impl Random {
 
     /// Returns a uniform unit vector.
     pub fn direction(&mut self) -> DVec3 {
-        ball_surface(self.pair())
+        sample_sphere(self.pair())
     }
 }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 const STACK: usize = 64 << 20;
 
 /// Returns the results of `one` for all numbers below `count`, computed in parallel. Each may be a render.
-pub fn many<T: Send>(count: u64, one: impl Fn(u64) -> T + Send + Sync) -> Vec<T> {
+pub fn parallel_map<T: Send>(count: u64, one: impl Fn(u64) -> T + Send + Sync) -> Vec<T> {
     let threads = ThreadPoolBuilder::new().stack_size(STACK).build().expect("threads can be started");
     threads.install(|| (0..count).into_par_iter().map(one).collect())
 }

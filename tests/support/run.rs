@@ -47,7 +47,7 @@ impl Folder {
     }
 
     /// Returns the sorted names in the folder.
-    pub fn listing(&self) -> Vec<String> {
+    pub fn file_names(&self) -> Vec<String> {
         let entries = fs::read_dir(self.path()).expect("the folder can be read");
         let name = |entry: fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
         let mut names: Vec<String> = entries.map(|entry| name(entry.expect("an entry can be read"))).collect();

@@ -19,7 +19,7 @@ pub const SPLITTING: Transport = Transport::Random { split: 0.05, roulette: 0.05
 /// The path tracer: one branch at every surface and one light at every vertex.
 pub const SINGLE_PATH: Transport = Transport::Random { split: 1.0, roulette: 0.05 };
 /// A polarizer and a wave plate in front of the middle of a room, so that its light has all Stokes components.
-pub const SHEETS: &str = r#"
+pub const POLARIZING_SHEETS: &str = r#"
 [material.sheet]
 polarizer = { axis = [1, 0.5, 0], extinction = 0.05 }
 [material.plate]
@@ -49,7 +49,7 @@ pub fn scene_in(folder: &Path, text: &str) -> Scene<Curve> {
 }
 
 /// Returns the first mistake in a text that must be refused. The text may name files in a folder.
-pub fn refusal_in(folder: &Path, text: &str) -> Diagnostic {
+pub fn first_mistake(folder: &Path, text: &str) -> Diagnostic {
     let source = Source { path: folder.join("scene.toml"), text: text.to_owned() };
     match source.compile() {
         Err(Error::Scene(mistakes)) => mistakes[0].clone(),
@@ -58,12 +58,12 @@ pub fn refusal_in(folder: &Path, text: &str) -> Diagnostic {
 }
 
 /// Renders a text as its plan decides, on one thread.
-pub fn rendered(text: &str) -> Image {
-    rendered_with(text, &Options { threads: Some(1), ..Options::default() })
+pub fn render_text(text: &str) -> Image {
+    render_text_with(text, &Options { threads: Some(1), ..Options::default() })
 }
 
 /// Renders a text with the given options.
-pub fn rendered_with(text: &str, options: &Options) -> Image {
+pub fn render_text_with(text: &str, options: &Options) -> Image {
     let scene = Scene::parse(text, "").unwrap_or_else(|error| panic!("{error}\n{text}"));
     abbe::render(&scene, options).expect("it renders")
 }
@@ -127,22 +127,22 @@ pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
 }
 
 /// Renders a text with the given transport.
-pub fn image(text: &str, transport: Transport) -> (Film, Report) {
-    image_in(Path::new(""), text, transport)
+pub fn render_film(text: &str, transport: Transport) -> (Film, Report) {
+    render_film_in(Path::new(""), text, transport)
 }
 
 /// Renders a text that may name files in a folder, with the given transport.
-pub fn image_in(folder: &Path, text: &str, transport: Transport) -> (Film, Report) {
+pub fn render_film_in(folder: &Path, text: &str, transport: Transport) -> (Film, Report) {
     let scene = scene_in(folder, text);
     let method = method(&scene, transport);
     render(&prepare(&scene, method), &|_| ())
 }
 
 /// Renders a text with the given transport under each of the seeds from 0.
-pub fn images(text: &str, transport: Transport, seeds: u64) -> Vec<(Film, Report)> {
+pub fn render_films(text: &str, transport: Transport, seeds: u64) -> Vec<(Film, Report)> {
     let scene = scene(text);
-    let asked = method(&scene, transport);
-    (0..seeds).map(|seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ())).collect()
+    let setup = method(&scene, transport);
+    (0..seeds).map(|seed| render(&prepare(&scene, Method { seed, ..setup.clone() }), &|_| ())).collect()
 }
 
 /// Renders a scene with a method and returns its film.
@@ -173,7 +173,7 @@ impl Mean {
     /// spread gives the error.
     pub fn of(film: &Film) -> Self {
         let bands = [0, 1, 2].map(|band| {
-            let (mean, variance) = moments(film.pixels.iter().map(|pixel| f64::from(pixel.rgb[band])));
+            let (mean, variance) = mean_and_variance(film.pixels.iter().map(|pixel| f64::from(pixel.rgb[band])));
             (mean, (variance / film.pixels.len() as f64).sqrt())
         });
         Self { value: bands.map(|band| band.0), error: bands.map(|band| band.1) }
@@ -184,7 +184,8 @@ impl Mean {
     pub fn over_seeds(films: &[Film]) -> Self {
         let (pixels, seeds) = (films[0].pixels.len(), films.len() as f64);
         let bands = [0, 1, 2].map(|band| {
-            let of_pixel = |i: usize| moments(films.iter().map(move |film| f64::from(film.pixels[i].rgb[band])));
+            let of_pixel =
+                |i: usize| mean_and_variance(films.iter().map(move |film| f64::from(film.pixels[i].rgb[band])));
             let (mean, variance) = (0..pixels).map(of_pixel).fold((0.0, 0.0), |sum, m| (sum.0 + m.0, sum.1 + m.1));
             (mean / pixels as f64, (variance / seeds).sqrt() / pixels as f64)
         });
@@ -192,19 +193,19 @@ impl Mean {
     }
 
     /// Renders a text under each of the seeds from 0 and computes the mean.
-    pub fn rendered(text: &str, transport: Transport, seeds: u64) -> Self {
+    pub fn render_text(text: &str, transport: Transport, seeds: u64) -> Self {
         let scene = scene(text);
         Self::over_seeds(&films_of(&scene, &method(&scene, transport), 0..seeds))
     }
 
     /// Multiplies each band by a factor.
     pub fn times(&self, factors: [f64; 3]) -> Self {
-        let by = |of: [f64; 3]| std::array::from_fn(|band| of[band] * factors[band]);
-        Self { value: by(self.value), error: by(self.error) }
+        let scaled = |of: [f64; 3]| std::array::from_fn(|band| of[band] * factors[band]);
+        Self { value: scaled(self.value), error: scaled(self.error) }
     }
 
     /// Keeps the value and takes the standard error of its difference from another mean.
-    pub fn beside(&self, other: &Self) -> Self {
+    pub fn with_joint_error(&self, other: &Self) -> Self {
         Self { error: std::array::from_fn(|band| libm::hypot(self.error[band], other.error[band])), ..*self }
     }
 
@@ -213,7 +214,7 @@ impl Mean {
     ///
     /// A single claim fails by chance in 0.27 % of the cases, and so do all `claims` together (Sidak 1967).
     pub fn assert_near(&self, expected: [f64; 3], claims: usize, what: &str) {
-        let limit = standard_errors(claims);
+        let limit = sigma_limit(claims);
         for band in 0..3 {
             let (value, error, expected) = (self.value[band], self.error[band], expected[band]);
             // Lanes are f32: even a pixel without noise is rounded at each of some dozen surfaces.
@@ -228,7 +229,7 @@ impl Mean {
     }
 
     /// Returns the largest standard error of a band relative to its expected value.
-    pub fn worst_error(&self, expected: [f64; 3]) -> f64 {
+    pub fn worst_relative_error(&self, expected: [f64; 3]) -> f64 {
         (0..3).map(|band| self.error[band] / expected[band]).fold(0.0, larger)
     }
 }
@@ -246,25 +247,25 @@ pub fn assert_near<T: Copy + Debug + Into<f64>, const N: usize>(
 
 /// Asserts that a lamp contributes the same with next-event estimation, to one light or to all, as when only random
 /// paths hit it. The standard error of the difference must be less than `share` of the value.
-pub fn assert_aimed_at_as_met([aimed_at, met]: [&str; 2], seeds: u64, share: f64, claims: usize, what: &str) {
-    let by_chance = Mean::rendered(met, SINGLE_PATH, seeds);
+pub fn assert_next_event_agrees([sampled, hit_only]: [&str; 2], seeds: u64, share: f64, claims: usize, what: &str) {
+    let by_chance = Mean::render_text(hit_only, SINGLE_PATH, seeds);
     for transport in [SINGLE_PATH, SPLITTING] {
-        let aimed = Mean::rendered(aimed_at, transport, seeds).beside(&by_chance);
-        println!("{what}: {aimed:.5?} for {by_chance:.5?}");
-        assert!(aimed.worst_error(by_chance.value) < share, "{what}: {aimed:?}");
-        aimed.assert_near(by_chance.value, claims, what);
+        let estimate = Mean::render_text(sampled, transport, seeds).with_joint_error(&by_chance);
+        println!("{what}: {estimate:.5?} for {by_chance:.5?}");
+        assert!(estimate.worst_relative_error(by_chance.value) < share, "{what}: {estimate:?}");
+        estimate.assert_near(by_chance.value, claims, what);
     }
 }
 
 /// Returns the mean and the unbiased variance.
-pub fn moments(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
+pub fn mean_and_variance(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let count = values.clone().count() as f64;
     let mean = values.clone().sum::<f64>() / count;
     (mean, values.map(|value| (value - mean) * (value - mean)).sum::<f64>() / (count - 1.0))
 }
 
 /// Returns how many standard errors bound all of `claims` independent means in 99.73 % of the cases.
-pub fn standard_errors(claims: usize) -> f64 {
+pub fn sigma_limit(claims: usize) -> f64 {
     let chance = -libm::expm1(libm::log1p(-0.0027) / claims as f64);
     let (mut low, mut high) = (2.0, 10.0);
     for _ in 0..60 {

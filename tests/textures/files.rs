@@ -66,9 +66,9 @@ fn every_kind_of_png_is_read_as_it_is_meant() {
         if has_alpha {
             assert_near(image_of(&scene, 3).texel(0, 0), [alpha; 3], tolerance, name);
         }
-        let told = scene.warnings.iter().filter(|warning| warning.contains("alpha")).count();
+        let reported = scene.warnings.iter().filter(|warning| warning.contains("alpha")).count();
         // Once for each way of reading the file that leaves alpha out, except for single channels.
-        assert_eq!(told, if has_alpha { 2 } else { 0 }, "{name}: {:?}", scene.warnings);
+        assert_eq!(reported, if has_alpha { 2 } else { 0 }, "{name}: {:?}", scene.warnings);
     }
 }
 
@@ -93,22 +93,27 @@ const DISPLAY_P3: [[f64; 3]; 3] = [[0.5151, 0.2412, -0.0011], [0.2920, 0.6922, 0
 const SRGB: [[f64; 3]; 3] = [[0.4361, 0.2225, 0.0139], [0.3851, 0.7169, 0.0971], [0.1431, 0.0606, 0.7141]];
 
 #[test]
-fn what_the_color_profile_of_a_jpeg_says_is_told() {
+fn an_ignored_color_profile_of_a_jpeg_is_reported() {
     let p3 = profile(DISPLAY_P3);
     let damaged = (0..p3.len()).step_by(7).map(|end| (p3[..end].to_vec(), false));
-    for (profile, is_told) in [(p3.clone(), true), (profile(SRGB), false)].into_iter().chain(damaged) {
+    for (profile, is_reported) in [(p3.clone(), true), (profile(SRGB), false)].into_iter().chain(damaged) {
         let folder = tempfile::tempdir().unwrap();
         let mut encoder = jpeg_encoder::Encoder::new_file(folder.path().join("a.jpg"), 90).unwrap();
         encoder.add_icc_profile(&profile).unwrap();
         encoder.encode(&[9, 8, 7], 1, 1, jpeg_encoder::ColorType::Rgb).unwrap();
-        let told = materials(folder.path(), &["{ image = \"a.jpg\" }"]).warnings.clone();
-        let said = |told: &String| told.contains("a color profile (ICC) with other primaries, which is ignored");
-        assert!(told.len() == usize::from(is_told) && told.iter().all(said), "{} bytes: {told:?}", profile.len());
+        let reported = materials(folder.path(), &["{ image = \"a.jpg\" }"]).warnings.clone();
+        let said =
+            |reported: &String| reported.contains("a color profile (ICC) with other primaries, which is ignored");
+        assert!(
+            reported.len() == usize::from(is_reported) && reported.iter().all(said),
+            "{} bytes: {reported:?}",
+            profile.len()
+        );
     }
 }
 
 #[test]
-fn a_photo_of_a_turned_camera_is_told() {
+fn a_photo_of_a_turned_camera_is_reported() {
     // A directory of two entries of 12 bytes. The second one is the orientation, 6 for a quarter turn.
     let exif = |orientation: u8, is_big: bool| -> Vec<u8> {
         let short = |x: u16| if is_big { x.to_be_bytes() } else { x.to_le_bytes() };
@@ -121,21 +126,22 @@ fn a_photo_of_a_turned_camera_is_told() {
     let whole = jpeg([8, 8], 75, false, &[100; 8 * 8 * 3]);
     let damaged = (0..38).map(|end| (exif(6, false)[..end].to_vec(), end > 31));
     let good = [(exif(6, true), true), (exif(8, false), true), (exif(1, true), false), (exif(0, false), false)];
-    for (exif, is_told) in good.into_iter().chain(damaged) {
+    for (exif, is_reported) in good.into_iter().chain(damaged) {
         let folder = tempfile::tempdir().unwrap();
         let length = (exif.len() as u16 + 8).to_be_bytes();
         let bytes = [&whole[..2], &[0xff, 0xe1], &length, b"Exif\0\0", &exif, &whole[2..]].concat();
         std::fs::write(folder.path().join("a.jpg"), bytes).unwrap();
-        let told = materials(folder.path(), &["{ image = \"a.jpg\" }"]).warnings.clone();
-        let said =
-            |told: &String| told.contains("the EXIF orientation of a.jpg is ignored: save it upright if it looks");
-        assert!(told.len() == usize::from(is_told) && told.iter().all(said), "{exif:?}: {told:?}");
+        let reported = materials(folder.path(), &["{ image = \"a.jpg\" }"]).warnings.clone();
+        let said = |reported: &String| {
+            reported.contains("the EXIF orientation of a.jpg is ignored: save it upright if it looks")
+        };
+        assert!(reported.len() == usize::from(is_reported) && reported.iter().all(said), "{exif:?}: {reported:?}");
     }
 }
 
 /// Only colors are concerned, and only if the file does not also say that they are sRGB.
 #[test]
-fn what_a_png_says_of_colors_that_are_not_srgb_is_told() {
+fn colors_of_a_png_that_are_not_srgb_are_reported() {
     type Marks = fn(&mut png::Info);
     let p3 = png::SourceChromaticities::new((0.3127, 0.329), (0.68, 0.32), (0.265, 0.69), (0.15, 0.06));
     let marks: [(Marks, Option<&str>); 7] = [
@@ -160,13 +166,13 @@ fn what_a_png_says_of_colors_that_are_not_srgb_is_told() {
         let mut writer = png::Encoder::with_info(file, info).unwrap().write_header().unwrap();
         writer.write_image_data(&[9, 8, 7]).unwrap();
         writer.finish().unwrap();
-        let told = materials(folder.path(), &["{ image = \"a.png\" }"]).warnings.clone();
+        let reported = materials(folder.path(), &["{ image = \"a.png\" }"]).warnings.clone();
         match expected {
-            None => assert!(told.is_empty(), "{told:?}"),
-            Some(said) => assert!(told.len() == 1 && told[0].contains(said), "{told:?}"),
+            None => assert!(reported.is_empty(), "{reported:?}"),
+            Some(said) => assert!(reported.len() == 1 && reported[0].contains(said), "{reported:?}"),
         }
-        let of_data = ["{ image = \"a.png\", encoding = \"linear\" }"];
-        assert!(materials(folder.path(), &of_data).warnings.is_empty());
+        let data_reflectance = ["{ image = \"a.png\", encoding = \"linear\" }"];
+        assert!(materials(folder.path(), &data_reflectance).warnings.is_empty());
     }
 }
 
@@ -226,13 +232,13 @@ pub(super) fn refusal_of(folder: &Path, material: &str) -> abbe::Diagnostic {
          shape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n",
         view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4)
     );
-    refusal_in(folder, &text)
+    first_mistake(folder, &text)
 }
 
 #[test]
 fn impossible_thicknesses_are_refused_with_their_place() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, bad, told) in
+    for (name, bad, reported) in
         [("hole.exr", f32::NAN, "NaN"), ("dark.exr", -0.25, "-0.25"), ("far.exr", f32::INFINITY, "inf")]
     {
         let at = |x: usize, y: usize| if (x, y) == (2, 1) { (bad, bad, bad) } else { (0.5, 0.5, 0.5) };
@@ -243,7 +249,11 @@ fn impossible_thicknesses_are_refused_with_their_place() {
             format!("conductor = {{ metal = \"Ti\", coating = [{{ index = 2.4, thickness_nm = {image} }}] }}"),
         ] {
             let found = refusal_of(folder.path(), &material);
-            assert_eq!(found.message, format!("{name}: pixel (2, 1) is [{told}, {told}, {told}]"), "{material}");
+            assert_eq!(
+                found.message,
+                format!("{name}: pixel (2, 1) is [{reported}, {reported}, {reported}]"),
+                "{material}"
+            );
             let save = if bad < 0.0 { ": save the image with its negative values set to 0" } else { "" };
             let help = format!("thicknesses are finite and not negative{save}");
             assert_eq!(found.help.as_deref(), Some(help.as_str()), "{material}");
@@ -269,8 +279,8 @@ fn impossible_texels_are_refused_with_their_place() {
     let scaled = refused("{ image = \"bright.exr\", scale = 0.7 }");
     assert_eq!(scaled, format!("bright.exr: pixel (2, 1) is 1.5 times its scale of 0.7, {more}"));
     let mask = "[material.b]\nmask = { material = \"a\", opacity = { image = \"bright.exr\" } }";
-    let told = refusal_of(folder.path(), &format!("diffuse = {{ reflectance = 1 }}\n{mask}")).message;
-    assert_eq!(told, "bright.exr: pixel (2, 1) is 1.5, and a share is at most 1");
+    let reported = refusal_of(folder.path(), &format!("diffuse = {{ reflectance = 1 }}\n{mask}")).message;
+    assert_eq!(reported, "bright.exr: pixel (2, 1) is 1.5, and a share is at most 1");
     // A number that is not used may be anything.
     materials(
         folder.path(),
@@ -283,12 +293,12 @@ fn impossible_texels_are_refused_with_their_place() {
     let sum = crc32fast::hash(&huge[12..29]);
     huge[29..33].copy_from_slice(&sum.to_be_bytes());
     std::fs::write(folder.path().join("huge.png"), huge).unwrap();
-    let told = refused("{ image = \"huge.png\" }");
-    assert_eq!(told, "cannot read huge.png: its 65536 x 65536 pixels are more than 134217728");
+    let reported = refused("{ image = \"huge.png\" }");
+    assert_eq!(reported, "cannot read huge.png: its 65536 x 65536 pixels are more than 134217728");
 }
 
 #[test]
-fn an_image_of_another_kind_than_its_name_says_is_told() {
+fn an_image_of_another_kind_than_its_name_says_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     exr::prelude::write_rgb_file(folder.join("exr"), 1, 1, |_, _| (0.5, 0.5, 0.5)).unwrap();
@@ -296,7 +306,7 @@ fn an_image_of_another_kind_than_its_name_says_is_told() {
     write_png(folder, "png", 1, L8, &[7]);
     let png = std::fs::read(folder.join("png")).unwrap();
     let joint = jpeg([8, 8], 75, false, &[100; 64]);
-    for (name, bytes, told, help) in [
+    for (name, bytes, reported, help) in [
         ("a.b.jpg", &png[..], "JPEG format: it is a PNG image", "rename it to a.b.png"),
         ("a.png", &joint, "PNG format: it is a JPEG image", "rename it to a.jpg"),
         ("a.hdr", &open_exr, "Radiance format: it is an OpenEXR image", "rename it to a.exr"),
@@ -305,7 +315,7 @@ fn an_image_of_another_kind_than_its_name_says_is_told() {
     ] {
         std::fs::write(folder.join(name), bytes).unwrap();
         let found = refusal_of(folder, &format!("diffuse = {{ reflectance = {{ image = \"{name}\" }} }}"));
-        assert_eq!(found.message, format!("{name} is not in {told}"));
+        assert_eq!(found.message, format!("{name} is not in {reported}"));
         assert_eq!(found.help.as_deref(), Some(help));
     }
     write_png(folder, "a.png", 1, L8, &[7]);

@@ -71,11 +71,11 @@ fn expected(scene: &Scene<Curve>, basis: &Basis) -> [f64; 3] {
     let emission = scene.lights[0].emission();
     let (table, response) = (basis.tabulate(Quantity::Emission, emission), basis.response(emission));
     let draw: Draw<MAX_LANES> = basis.draw(0.5);
-    sent(|uv| response.sensor(&draw, draw.read_at(&table, uv), false))
+    floor_color(|uv| response.film_rgb(&draw, draw.read_at(&table, uv), false))
 }
 
 /// Returns the film color of the floor's middle under a lamp with any radiance.
-fn sent(radiance: impl Fn([f64; 2]) -> [f64; 3]) -> [f64; 3] {
+fn floor_color(radiance: impl Fn([f64; 2]) -> [f64; 3]) -> [f64; 3] {
     const STEPS: usize = 300;
     let mut sum = [0.0; 3];
     for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
@@ -98,11 +98,11 @@ fn a_lamp_that_shows_an_image_lights_a_floor_as_its_texels_say() {
         let expected = expected(&scene, &plan(&scene).method.basis);
         if model == "\"rgb\"" {
             // The three numbers are those in the file, times two.
-            let by_texels = sent(|uv| color(uv).map(|x| 2.0 * x));
+            let by_texels = floor_color(|uv| color(uv).map(|x| 2.0 * x));
             assert!((0..3).all(|c| (expected[c] / by_texels[c] - 1.0).abs() < 1e-5), "{expected:?} for {by_texels:?}");
         }
         let mean = mean(&scene);
-        let error = mean.worst_error(expected);
+        let error = mean.worst_relative_error(expected);
         assert!(error < 0.01, "{model}: noise {error}");
         // The floor is not a point: over 0.01 to each side the form factor changes by 1e-4, with the square of the
         // distance.
@@ -117,7 +117,7 @@ fn a_lamp_that_shows_an_image_lights_a_floor_as_its_texels_say() {
 /// A lamp whose image has a dark and a bright half shines like the bright half alone.
 #[test]
 fn a_checkered_lamp_shines_like_its_two_halves() {
-    let lit = |lamps: &str| {
+    let floor_mean = |lamps: &str| {
         let text = floor("\"rgb\"").replace(
             LAMP,
             "emissive = { radiance = { checker = [0, { rgb = [3, 2, 1] }], repeat = [2, 1], scale = 2 } }",
@@ -130,9 +130,9 @@ fn a_checkered_lamp_shines_like_its_two_halves() {
         };
         mean(&scene(&text))
     };
-    let (checker, half) = (lit(""), lit("{ rgb = [6, 4, 2] }"));
+    let (checker, half) = (floor_mean(""), floor_mean("{ rgb = [6, 4, 2] }"));
     for c in 0..3 {
-        let error = checker.beside(&half).error[c];
+        let error = checker.with_joint_error(&half).error[c];
         assert!(error < 0.01 * half.value[c], "noise {error}");
         let off = (checker.value[c] - half.value[c]).abs();
         assert!(off <= 3.5 * error + 1e-6, "channel {c}: {} for {}", checker.value[c], half.value[c]);
@@ -237,7 +237,7 @@ fn l10_one_bright_texel_of_a_lamp_is_found() {
         let text = floor("\"rgb\"").replace(LAMP, &LAMP.replace("wrap = \"clamp\"", "filter = \"nearest\""));
         let scene = scene_in(folder.path(), &text.replace(quad, lamp.shape));
         let (mean, expected) = (mean(&scene), 2e6 * lamp.expected());
-        let error = mean.worst_error([expected; 3]);
+        let error = mean.worst_relative_error([expected; 3]);
         println!("{}: {} +- {} for {expected}", lamp.shape, mean.value[0], mean.error[0]);
         assert!(error < 0.01, "{}: noise {error}", lamp.shape);
         // The floor is not a point, and the texel is not near the horizon of any of its points.
@@ -253,14 +253,14 @@ fn patterns_too_fine_to_be_told_apart_shine_like_their_mean() {
     let mesh = "mesh = { points = [[-0.8, 1, -0.7], [1.2, 1, -0.7], [1.2, 1, 0.9], [-0.8, 1, 0.9]], \
                 faces = [[0, 1, 2], [0, 2, 3]], uv = [[0, 0], [1e30, 0], [1e30, -1e25], [0, 1e9]] }";
     let quad = "quad = { center = [0.2, 1, 0.1], u = [1, 0, 0], v = [0, 0, 0.8] }";
-    let lit = |lamp: &str, shape: &str| {
+    let floor_mean = |lamp: &str, shape: &str| {
         let scene = scene(&floor("\"rgb\"").replace(LAMP, lamp).replace(quad, shape));
         let method = Method { transport: SPLITTING, ..plan(&scene).method };
         mean_color(&film_of(&scene, method))[0]
     };
-    let even = lit("emissive = { radiance = { rgb = [3, 2, 1] } }", quad);
-    let (of_quad, of_mesh) = (lit(fine, quad), lit(fine, mesh));
-    println!("{of_quad} and {of_mesh} for {even}");
+    let even = floor_mean("emissive = { radiance = { rgb = [3, 2, 1] } }", quad);
+    let (quad_mean, mesh_mean) = (floor_mean(fine, quad), floor_mean(fine, mesh));
+    println!("{quad_mean} and {mesh_mean} for {even}");
     // At the ends of the number range, a pattern no longer is what was written. On the mesh it is still light.
-    assert!((of_quad / even - 1.0).abs() < 0.1 && of_mesh >= 0.0 && of_mesh < 2.0 * even);
+    assert!((quad_mean / even - 1.0).abs() < 0.1 && mesh_mean >= 0.0 && mesh_mean < 2.0 * even);
 }

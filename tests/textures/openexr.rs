@@ -15,7 +15,7 @@ fn write(folder: &Path, name: &str, channels: &[(&'static str, [f32; 2])]) {
 }
 
 /// Returns red, green and blue of the second pixel.
-fn second(folder: &Path, options: &str) -> [f32; 3] {
+fn second_pixel(folder: &Path, options: &str) -> [f32; 3] {
     image_of(&materials(folder, &[&format!("{{ image = \"a.exr\"{options} }}")]), 0).texel(1, 0)
 }
 
@@ -26,44 +26,44 @@ fn grays_layers_and_small_letters_are_read() {
     let (gray, alpha) = ([0.5, 0.25], [1.0, 0.75]);
     for name in ["Y", "Z", "R", "matte", "light.Y", "A"] {
         write(folder, "a.exr", &[(name, gray)]);
-        assert_eq!(second(folder, ""), [0.25; 3], "{name}");
-        assert_eq!(second(folder, ", channel = \"green\""), [0.25; 3], "{name}");
+        assert_eq!(second_pixel(folder, ""), [0.25; 3], "{name}");
+        assert_eq!(second_pixel(folder, ", channel = \"green\""), [0.25; 3], "{name}");
         let alone = if name == "A" { 0.25 } else { 1.0 };
-        assert_eq!(second(folder, ", channel = \"alpha\""), [alone; 3], "{name}");
+        assert_eq!(second_pixel(folder, ", channel = \"alpha\""), [alone; 3], "{name}");
     }
     for [color, beside] in [["Y", "A"], ["mask.Z", "mask.A"], ["y", "a"]] {
         write(folder, "a.exr", &[(beside, alpha), (color, gray)]);
-        assert_eq!(second(folder, ""), [0.25; 3], "{color}");
-        assert_eq!(second(folder, ", channel = \"alpha\""), [0.75; 3], "{color}");
+        assert_eq!(second_pixel(folder, ""), [0.25; 3], "{color}");
+        assert_eq!(second_pixel(folder, ", channel = \"alpha\""), [0.75; 3], "{color}");
     }
     // Luminance and a depth.
     write(folder, "a.exr", &[("Y", gray), ("Z", [1e9; 2])]);
-    assert_eq!(second(folder, ""), [0.25; 3]);
+    assert_eq!(second_pixel(folder, ""), [0.25; 3]);
     let colors = |names: [&'static str; 3]| [(names[0], [0.1; 2]), (names[1], [0.2; 2]), (names[2], [0.3; 2])];
     let beauty = colors(["beauty.R", "beauty.G", "beauty.B"]);
     write(folder, "a.exr", &[&beauty[..], &[("beauty.A", alpha), ("Z", gray)]].concat());
-    assert_eq!(second(folder, ""), [0.1, 0.2, 0.3]);
-    assert_eq!(second(folder, ", channel = \"alpha\""), [0.75; 3]);
+    assert_eq!(second_pixel(folder, ""), [0.1, 0.2, 0.3]);
+    assert_eq!(second_pixel(folder, ", channel = \"alpha\""), [0.75; 3]);
     let small = colors(["r", "g", "b"]);
     write(folder, "a.exr", &small);
-    assert_eq!(second(folder, ""), [0.1, 0.2, 0.3]);
+    assert_eq!(second_pixel(folder, ""), [0.1, 0.2, 0.3]);
     let albedo = [("albedo.R", [0.9; 2]), ("albedo.G", [0.9; 2]), ("albedo.B", [0.9; 2]), ("a", alpha)];
     write(folder, "a.exr", &[&albedo[..], &small[..]].concat());
-    assert_eq!(second(folder, ""), [0.1, 0.2, 0.3], "what has no layer comes first");
-    assert_eq!(second(folder, ", channel = \"alpha\""), [0.75; 3]);
+    assert_eq!(second_pixel(folder, ""), [0.1, 0.2, 0.3], "what has no layer comes first");
+    assert_eq!(second_pixel(folder, ", channel = \"alpha\""), [0.75; 3]);
     // Of several parts, the one with colors is read.
     let mut parts = Exr::new([2, 1], vec![("Z", vec![1e9; 2])]);
     parts.parts[0].0 = "depth";
     parts.parts.push(("color", colors(["R", "G", "B"]).map(|(name, values)| (name, values.to_vec())).to_vec()));
     parts.write(&folder.join("a.exr"));
-    assert_eq!(second(folder, ""), [0.1, 0.2, 0.3]);
+    assert_eq!(second_pixel(folder, ""), [0.1, 0.2, 0.3]);
     write(folder, "sky.exr", &[("Y", gray)]);
     let text = format!("{}[[light]]\nenvironment.radiance.image = \"sky.exr\"\n", view([9.0; 3], [0.0; 3], 30.0, 4));
     scene_in(folder, &text);
 }
 
 #[test]
-fn compressions_that_are_not_known_are_told() {
+fn unknown_compressions_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     // The values are so alike that the file is not stored uncompressed.
@@ -83,10 +83,10 @@ fn compressions_that_are_not_known_are_told() {
 }
 
 #[test]
-fn channels_that_are_no_image_are_told() {
+fn channels_that_form_no_image_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    for (names, told) in [
+    for (names, reported) in [
         (&["N.X", "N.Y", "N.Z"][..], "N.X, N.Y, N.Z"),
         (&["X", "Y", "Z"], "X, Y, Z"),
         (&["Y", "RY", "BY"], "BY, RY, Y"),
@@ -95,7 +95,7 @@ fn channels_that_are_no_image_are_told() {
         let channels: Vec<_> = names.iter().map(|name| (*name, [0.5; 2])).collect();
         write(folder, "a.exr", &channels);
         let found = refusal_of(folder, "diffuse = { reflectance = { image = \"a.exr\" } }");
-        assert_eq!(found.message, format!("a.exr has no channels R, G and B: it has the channels {told}"));
+        assert_eq!(found.message, format!("a.exr has no channels R, G and B: it has the channels {reported}"));
         let help = match names.contains(&"RY") {
             true => "save it as red, green and blue",
             false => "save one of them alone to use it as a gray",
@@ -203,7 +203,7 @@ fn colors_of_another_space_are_converted_and_numbers_are_not() {
 
 /// Rec.709 has no colors with negative numbers, and wide spaces hold colors outside of it.
 #[test]
-fn colors_outside_of_rec709_are_told() {
+fn colors_outside_of_rec709_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let place = format!("{}:", folder.join("scene.toml").display());
@@ -215,14 +215,14 @@ fn colors_outside_of_rec709_are_told() {
         let warnings = materials(folder, &["{ image = \"a.exr\" }"]).warnings;
         warnings.into_iter().map(behind_its_place).collect()
     };
-    let told = |others: &str| {
+    let reported = |others: &str| {
         vec![format!("a.exr: pixel (0, 0) lies outside Rec.709{others}: negative values there count as 0")]
     };
     write_colors(folder, ACESCG, [[0.0, 0.5, 0.0], [0.5; 3]]);
-    assert_eq!(warnings(), told(""));
-    assert_eq!(second(folder, ""), [0.5; 3]);
+    assert_eq!(warnings(), reported(""));
+    assert_eq!(second_pixel(folder, ""), [0.5; 3]);
     write_colors(folder, ACESCG, [[0.0, 0.5, 0.0]; 2]);
-    assert_eq!(warnings(), told(", as does 1 other"));
+    assert_eq!(warnings(), reported(", as does 1 other"));
     // Rec.709's own green in ACEScg, with the rounding of halves, lies on the edge.
     let green = [0.169_799_8, 0.458_251_95, 0.054_779_053];
     write_colors(folder, ACESCG, [green; 2]);
@@ -234,7 +234,7 @@ fn colors_outside_of_rec709_are_told() {
     write_colors(folder, ACESCG, [[0.0, 9.0, 0.0], [0.5; 3]]);
     let text = format!("{}[[light]]\nenvironment.radiance.image = \"a.exr\"\n", view([9.0; 3], [0.0; 3], 30.0, 4));
     let sky = scene_in(folder, &text).warnings;
-    assert!(sky.iter().any(|told| told.contains("a.exr: pixel (0, 0) lies outside Rec.709")), "{sky:?}");
+    assert!(sky.iter().any(|reported| reported.contains("a.exr: pixel (0, 0) lies outside Rec.709")), "{sky:?}");
 }
 
 /// Lossy compression leaves numbers below 0 where the image is black.

@@ -6,7 +6,7 @@ use super::*;
 
 const HEADER: &str = "#?RADIANCE\n# made by hand\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n";
 
-fn compiled(bytes: &[u8]) -> abbe::Result<Scene<Curve>> {
+fn compile_image(bytes: &[u8]) -> abbe::Result<Scene<Curve>> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.hdr"), bytes).unwrap();
     // No number of a picture exceeds 2^127.
@@ -25,7 +25,7 @@ fn row(size: &str, bytes: &[u8], count: usize) -> Vec<[f32; 3]> {
 }
 
 fn texels(file: &[u8], count: usize) -> Vec<[f32; 3]> {
-    let scene = compiled(file).unwrap();
+    let scene = compile_image(file).unwrap();
     let Material::Diffuse(diffuse) = &scene.materials[0].material else { panic!("it is diffuse") };
     let CurveKind::Texture(texture) = &diffuse.reflectance.kind else { panic!("it is an image") };
     (0..count).map(|x| texture.image.texel(x, 0)).collect()
@@ -120,10 +120,10 @@ fn a_row_is_the_same_in_whatever_way_it_is_packed() {
 }
 
 #[test]
-fn what_is_wrong_with_a_radiance_picture_is_said() {
+fn mistakes_in_a_radiance_picture_are_reported() {
     let header = |from: &str, to: &str| HEADER.replace(from, to);
-    let with = |size: &str, bytes: &[u8]| [HEADER.as_bytes(), size.as_bytes(), b"\n", bytes].concat();
-    let packed = |bytes: &[u8]| with("-Y 1 +X 8", &[&[2, 2, 0, 8], bytes].concat());
+    let file_with = |size: &str, bytes: &[u8]| [HEADER.as_bytes(), size.as_bytes(), b"\n", bytes].concat();
+    let packed = |bytes: &[u8]| file_with("-Y 1 +X 8", &[&[2, 2, 0, 8], bytes].concat());
     let cases = [
         (b"#?RGB".to_vec(), "it does not begin like one"),
         (HEADER.as_bytes().to_vec(), "it ends too early"),
@@ -138,26 +138,32 @@ fn what_is_wrong_with_a_radiance_picture_is_said() {
             "its EXPOSURE is \"1e-300\", which it cannot be divided by",
         ),
         (header("EXPOSURE=1", "COLORCORR=1 2").into_bytes(), "its COLORCORR is \"1 2\", which it cannot be divided by"),
-        (with("+Y 1 +X 1", &[9; 4]), "its size is \"+Y 1 +X 1\", but only -Y height +X width is supported"),
-        (with("-Y 1 +X few", &[9; 4]), "its size is \"-Y 1 +X few\", but only -Y height +X width is supported"),
-        (with("-Y 0 +X 1", &[]), "it has no pixels"),
-        (with("-Y 2 +X 1", &[9; 7]), "it ends too early"),
-        (with("-Y 2 +X 1", &[9, 9, 9, 9, 1, 1, 1, 1]), "row 1 (counted from 0) is not as long as the image is wide"),
-        (with("-Y 1 +X 3", &[9, 9, 9, 9, 1, 1, 1, 3]), "row 0 (counted from 0) is not as long as the image is wide"),
+        (file_with("+Y 1 +X 1", &[9; 4]), "its size is \"+Y 1 +X 1\", but only -Y height +X width is supported"),
+        (file_with("-Y 1 +X few", &[9; 4]), "its size is \"-Y 1 +X few\", but only -Y height +X width is supported"),
+        (file_with("-Y 0 +X 1", &[]), "it has no pixels"),
+        (file_with("-Y 2 +X 1", &[9; 7]), "it ends too early"),
         (
-            with("-Y 1 +X 3", &[&[9; 4][..], &[1, 1, 1, 0].repeat(9)].concat()),
+            file_with("-Y 2 +X 1", &[9, 9, 9, 9, 1, 1, 1, 1]),
+            "row 1 (counted from 0) is not as long as the image is wide",
+        ),
+        (
+            file_with("-Y 1 +X 3", &[9, 9, 9, 9, 1, 1, 1, 3]),
             "row 0 (counted from 0) is not as long as the image is wide",
         ),
-        (with("-Y 1 +X 9", &[2, 2, 0, 8]), "row 0 (counted from 0) is not as long as the image is wide"),
+        (
+            file_with("-Y 1 +X 3", &[&[9; 4][..], &[1, 1, 1, 0].repeat(9)].concat()),
+            "row 0 (counted from 0) is not as long as the image is wide",
+        ),
+        (file_with("-Y 1 +X 9", &[2, 2, 0, 8]), "row 0 (counted from 0) is not as long as the image is wide"),
         (packed(&[128 + 9, 5]), "row 0 (counted from 0) is not as long as the image is wide"),
         (packed(&[128 + 8, 5, 9, 1, 2, 3]), "row 0 (counted from 0) is not as long as the image is wide"),
         (packed(&[128 + 8, 5, 8, 1, 2, 3]), "it ends too early"),
     ];
-    for (bytes, said) in cases {
-        let Err(abbe::Error::Scene(mistakes)) = compiled(&bytes) else { panic!("{said}: it is read") };
-        let message = match said.contains("supported") {
-            true => format!("cannot read a.hdr: {said}"),
-            false => format!("a.hdr is not a valid Radiance image ({said})"),
+    for (bytes, problem) in cases {
+        let Err(abbe::Error::Scene(mistakes)) = compile_image(&bytes) else { panic!("{problem}: it is read") };
+        let message = match problem.contains("supported") {
+            true => format!("cannot read a.hdr: {problem}"),
+            false => format!("a.hdr is not a valid Radiance image ({problem})"),
         };
         assert_eq!(mistakes[0].message, message);
     }

@@ -8,7 +8,7 @@ use abbe::plan::plan;
 use abbe::trace::{BrightPlace, BrightPlaces, Method, prepare, prepare_unguided, render, room_light};
 
 use crate::support::scenes::{
-    Mean, SPLITTING, body, environment, films_of, method, moments, quad, scene, standard_errors, view,
+    Mean, SPLITTING, body, environment, films_of, mean_and_variance, method, quad, scene, sigma_limit, view,
 };
 
 /// Returns a closed box, 4 x 3 x 5, with holes in the wall at x = -2. Each of them extends from z to z, and all of them
@@ -46,21 +46,21 @@ pub const SUN: &str = "[[light]]\nsun = { toward = [-1, 0.7, 0.2], irradiance = 
 /// Renders a scene with bounces that aim at places, or at nothing.
 pub fn films(text: &str, bright: Option<&BrightPlaces>, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
-    let asked = Method { bright: bright.cloned(), ..method(&scene, SPLITTING) };
-    films_of(&scene, &asked, 0..seeds)
+    let setup = Method { bright: bright.cloned(), ..method(&scene, SPLITTING) };
+    films_of(&scene, &setup, 0..seeds)
 }
 
-fn learned(text: &str) -> Option<BrightPlaces> {
+fn learned_places(text: &str) -> Option<BrightPlaces> {
     let scene = scene(text);
     room_light(&prepare_unguided(&scene, method(&scene, SPLITTING))).places
 }
 
 /// A center, two half edges and a radiance.
-type Listed = ([f64; 3], [f64; 3], [f64; 3], f64);
+type ListedPlace = ([f64; 3], [f64; 3], [f64; 3], f64);
 
 /// Returns the places of a list, to be aimed at from the whole room.
-fn places(list: &[Listed]) -> BrightPlaces {
-    let place = |&(center, u, v, radiance): &Listed| {
+fn places(list: &[ListedPlace]) -> BrightPlaces {
+    let place = |&(center, u, v, radiance): &ListedPlace| {
         let (center, half) = (DVec3::from(center), [DVec3::from(u), DVec3::from(v)]);
         BrightPlace { center, half, radiance }
     };
@@ -70,14 +70,14 @@ fn places(list: &[Listed]) -> BrightPlaces {
 
 /// Returns the sum of the variances of all pixels.
 pub fn variance(films: &[Film]) -> f64 {
-    let of_pixel = |i: usize| moments(films.iter().map(move |film| f64::from(film.pixels[i].rgb[1]))).1;
+    let of_pixel = |i: usize| mean_and_variance(films.iter().map(move |film| f64::from(film.pixels[i].rgb[1]))).1;
     (0..films[0].pixels.len()).map(of_pixel).sum()
 }
 
 pub fn assert_same(one: &[Film], other: &[Film], claims: usize, what: &str) {
     let [one, other] = [one, other].map(Mean::over_seeds);
     println!("{what}: {one:.5?} for {other:.5?}");
-    one.beside(&other).assert_near(other.value, claims, what);
+    one.with_joint_error(&other).assert_near(other.value, claims, what);
 }
 
 /// Returns the irradiance of a point of a floor over pi times the radiance of a rectangle at right angles to it:
@@ -117,7 +117,7 @@ fn an_even_sky_through_an_opening_gives_its_form_factor_wherever_bounces_aim() {
         let mut wider = found;
         wider.error = found.error.map(|error| error + 3e-4 * expected);
         wider.assert_near([expected; 3], cases.len(), &format!("{case:?}"));
-        assert!(found.worst_error([expected; 3]) < 0.01, "{found:?}");
+        assert!(found.worst_relative_error([expected; 3]) < 0.01, "{found:?}");
     }
 }
 
@@ -164,7 +164,7 @@ fn aimed_bounces_show_the_same_rooms_as_others() {
         ),
     ];
     for (name, text) in &cases {
-        let found = learned(text).unwrap_or_else(|| panic!("{name}: nothing is bright"));
+        let found = learned_places(text).unwrap_or_else(|| panic!("{name}: nothing is bright"));
         assert!(!found.places.is_empty() && found.places.len() <= 6, "{found:?}");
         assert_same(&films(text, Some(&found), 8), &films(text, None, 8), cases.len(), name);
     }
@@ -181,20 +181,20 @@ fn aimed_bounces_leave_out_as_much_as_others() {
     ] {
         let text = room(&[[-2.0, -0.8], [0.2, 1.4]], walls, 64, &[SUN, &sky].concat());
         let text = text.replace("[render]\n", &format!("[render]\n{limit}\n"));
-        let (scene, found) = (scene(&text), learned(&text));
+        let (scene, found) = (scene(&text), learned_places(&text));
         assert!(found.is_some(), "{limit}: something is bright");
         let of = |bright: Option<BrightPlaces>| {
-            let asked = Method { bright, ..method(&scene, SPLITTING) };
-            let of_seed = |seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ()).1.stopped;
-            let (mean, variance) = moments((0..8).map(of_seed));
+            let setup = Method { bright, ..method(&scene, SPLITTING) };
+            let of_seed = |seed| render(&prepare(&scene, Method { seed, ..setup.clone() }), &|_| ()).1.stopped;
+            let (mean, variance) = mean_and_variance((0..8).map(of_seed));
             (mean, variance / 8.0)
         };
-        let ((aimed, of_aimed), (plain, of_plain)) = (of(found), of(None));
-        let error = (of_aimed + of_plain).sqrt();
+        let ((aimed, aimed_variance), (plain, plain_variance)) = (of(found), of(None));
+        let error = (aimed_variance + plain_variance).sqrt();
         println!("{limit}: {aimed:.4} of the weight is left out, {plain:.4} +- {error:.1e} where nothing is aimed");
         assert!(plain > 0.05 && error < 0.02 * plain, "{limit}: {plain} +- {error}");
         // Means of 8 films have the heavier tails of Student's t distribution.
-        assert!((aimed - plain).abs() < 1.6 * standard_errors(3) * error, "{limit}: {aimed} for {plain} +- {error}");
+        assert!((aimed - plain).abs() < 1.6 * sigma_limit(3) * error, "{limit}: {aimed} for {plain} +- {error}");
     }
 }
 

@@ -6,8 +6,8 @@ use abbe::trace::{Method, Transport};
 
 use crate::support::fresnel::reflectances;
 use crate::support::scenes::{
-    EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, SPLITTING, assert_aimed_at_as_met, body, film_of, image, lamps, method,
-    scene, view,
+    EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, SPLITTING, assert_next_event_agrees, body, film_of, lamps, method,
+    render_film, scene, view,
 };
 
 const POINT: &str = "[[light]]\npoint = { position = [1.5, 3, 0.5], intensity = 10 }\n";
@@ -34,17 +34,17 @@ fn under(panes: &str, lights: &str, reflectance: &str, samples: u32) -> String {
 }
 
 fn mean(text: &str, transport: Transport) -> Mean {
-    Mean::rendered(text, transport, 8)
+    Mean::render_text(text, transport, 8)
 }
 
 /// Returns the transmitted and the reflected share of a pane for unpolarized light at a cosine, by Fresnel's equations
 /// and the sum over all internal reflections.
 fn pane(n: f64, t: f64, cos: f64) -> [f64; 2] {
-    let of = |r: f64| {
+    let polarized_shares = |r: f64| {
         let through = (1.0 - r) * (1.0 - r) * t / (1.0 - r * r * t * t);
         [through, r + r * t * through]
     };
-    let [s, p] = reflectances(n, cos).map(of);
+    let [s, p] = reflectances(n, cos).map(polarized_shares);
     [0.5 * (s[0] + p[0]), 0.5 * (s[1] + p[1])]
 }
 
@@ -102,7 +102,7 @@ fn an_even_sky_above_endless_panes_gives_the_irradiance_of_their_sum() {
         for transport in [SPLITTING, SINGLE_PATH] {
             let found = mean(&text, transport);
             println!("{heights:?}: {found:.6?} for {expected:.6}");
-            assert!(found.worst_error([expected; 3]) < 0.004, "{found:?}");
+            assert!(found.worst_relative_error([expected; 3]) < 0.004, "{found:?}");
             found.assert_near([expected; 3], 18, "a sky above panes");
         }
     }
@@ -118,8 +118,9 @@ fn every_light_shines_through_a_pane_as_without_it_times_its_transmittance() {
             let material = "thin = { index = 1, transmittance = { rgb = [0.75, 0.5, 0.1] } }";
             for transport in [SPLITTING, SINGLE_PATH] {
                 let expected = open.times(tint.map(|t: f64| t.powi(heights.len() as i32)));
-                let through = mean(&under(&panes(material, &heights), lights, "0.5", 64), transport).beside(&expected);
-                assert!(through.worst_error(expected.value) < 0.02, "{name}: {through:?}");
+                let through =
+                    mean(&under(&panes(material, &heights), lights, "0.5", 64), transport).with_joint_error(&expected);
+                assert!(through.worst_relative_error(expected.value) < 0.02, "{name}: {through:?}");
                 through.assert_near(expected.value, 20, name);
             }
         }
@@ -139,7 +140,7 @@ fn aiming_through_panes_and_meeting_the_lamp_beyond_show_the_same() {
     let sheets = things.to_owned() + &panes("thin = { index = 1.52 }", &[1.0]) + &second;
     let floor = |lamp: &str| under(&sheets, lamp, "0.5", 512).replace("\"floor\"\n", "\"gold\"\n");
     let [aimed_at, met] = lamps(&["sphere = { center = [0, 3, 0], radius = 0.8 }"]).map(|lamp| floor(&lamp));
-    assert_aimed_at_as_met([&aimed_at, &met], 8, 0.02, 2, "through panes");
+    assert_next_event_agrees([&aimed_at, &met], 8, 0.02, 2, "through panes");
 }
 
 #[test]
@@ -154,7 +155,7 @@ fn a_pane_is_seen_in_alpha_and_depth_and_is_no_bounce() {
     let text =
         view([0.0, 0.0, 5.0], [0.0; 3], 1.0, 1) + "[render]\nsamples = 16\nmax_bounces = 1\n" + &pane + sheet + &wall;
     let sun = "[[light]]\nsun = { toward = [0, 0, 1], irradiance = 3, angular_diameter = 0 }\n";
-    let (film, _) = image(&(text + sun), SPLITTING);
+    let (film, _) = render_film(&(text + sun), SPLITTING);
     assert_eq!(film.pixels[0].alpha, 1.0);
     assert!((film.pixels[0].depth - 3.0).abs() < 1e-3, "{}", film.pixels[0].depth);
     // The light passes the pane twice and is reflected once by the wall.

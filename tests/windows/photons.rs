@@ -38,12 +38,12 @@ fn mean(text: &str, light_pass: bool, map: bool) -> Mean {
         to: vec![Smoothness::Whole],
         map,
     });
-    let asked = Method { light_pass, samples: 64, ..method(&scene, SPLITTING) };
-    Mean::over_seeds(&films_of(&scene, &asked, 0..8))
+    let setup = Method { light_pass, samples: 64, ..method(&scene, SPLITTING) };
+    Mean::over_seeds(&films_of(&scene, &setup, 0..8))
 }
 
 #[test]
-fn photons_and_paths_from_the_camera_share_out_what_passes_panes() {
+fn photons_and_camera_paths_divide_the_light_that_passes_panes() {
     let mirror = body(
         "steel",
         "mirror = { reflectance = 0.8 }",
@@ -56,13 +56,13 @@ fn photons_and_paths_from_the_camera_share_out_what_passes_panes() {
     ] {
         let text = room(camera_pane, more);
         let chance = mean(&text, false, false);
-        let mut photons = mean(&text, true, map).beside(&chance);
+        let mut photons = mean(&text, true, map).with_joint_error(&chance);
         println!("{name}: {photons:.5?} for {chance:.5?}");
         if map {
             // A map blurs: what it spreads across the floor's edge is less than a thousandth here.
             (0..3).for_each(|band| photons.error[band] += 0.001 * chance.value[band]);
         }
-        assert!(photons.worst_error(chance.value) < 0.01, "{name}: {photons:?}");
+        assert!(photons.worst_relative_error(chance.value) < 0.01, "{name}: {photons:?}");
         photons.assert_near(chance.value, 4, name);
     }
 }

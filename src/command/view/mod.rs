@@ -11,8 +11,8 @@ use clap::Parser;
 use clap::builder::PossibleValuesParser;
 
 use super::messages::{answer, print_written, say};
-use super::outputs::{Folders, check_exposure, check_png, spare};
-use super::signals::catch_plainly;
+use super::outputs::{Folders, check_exposure, check_not_input, check_png};
+use super::signals::exit_on_ctrl_c;
 
 const HELP: &str = "\
 kitty, WezTerm and Ghostty show the pixels themselves; other terminals show two pixels per character. \
@@ -68,33 +68,33 @@ pub struct Query {
 pub fn run(query: &Query) -> Result<()> {
     check_exposure(query.exposure)?;
     check_png(query.png.as_deref())?;
-    query.png.as_deref().map_or(Ok(()), |png| spare(&query.file, "image", png))?;
+    query.png.as_deref().map_or(Ok(()), |png| check_not_input(&query.file, "image", png))?;
     let file = ExrFile::read(&query.file)?;
-    let shown = query.file.display().to_string();
-    let of_names = query.layer.as_deref().and_then(|layer| Mattes::within(&file, layer));
-    let wanted = of_names.or(query.layer.as_deref());
-    let picture = match file.layer(wanted, &shown) {
-        Ok(layer) => of_layer(query, &file, &one_band(query, &file, layer, &shown)?)?,
-        Err(unknown) => of_mattes(query, wanted, &file, &shown, unknown)?,
+    let file_name = query.file.display().to_string();
+    let matte_name = query.layer.as_deref().and_then(|layer| Mattes::within(&file, layer));
+    let name = matte_name.or(query.layer.as_deref());
+    let picture = match file.layer(name, &file_name) {
+        Ok(layer) => of_layer(query, &file, &one_band(query, &file, layer, &file_name)?)?,
+        Err(unknown) => mattes_picture(query, name, &file, &file_name, unknown)?,
     };
     match &query.png {
         Some(png) => {
-            catch_plainly()?;
+            exit_on_ctrl_c()?;
             let _folders = Folders::of_files(&[png])?;
             picture.write_png(png)?;
             print_written(png);
             Ok(())
         }
-        None => answer(&terminal::drawn(&picture, query.sixel)?),
+        None => answer(&terminal::draw(&picture, query.sixel)?),
     }
 }
 
 /// Returns the layer, or the middle band of a spectrum if no layer was named. Refuses a spectrum named without a band.
-fn one_band<'f>(query: &Query, file: &'f ExrFile, layer: ExrLayer<'f>, shown: &str) -> Result<ExrLayer<'f>> {
+fn one_band<'f>(query: &Query, file: &'f ExrFile, layer: ExrLayer<'f>, file_name: &str) -> Result<ExrLayer<'f>> {
     let Some(centers) = layer.bands_nm().filter(|centers| centers.len() > 1) else { return Ok(layer) };
     let middle = centers.len() / 2;
     if query.layer.is_none() {
-        return file.layer(Some(&layer.channels[middle].full_name()), shown);
+        return file.layer(Some(&layer.channels[middle].full_name()), file_name);
     }
     let message = format!("{} holds the {} bands of a spectrum", layer.name, centers.len());
     Error::refuse(message, format!("name one by its wavelength: {}.{}nm", layer.name, centers[middle]))
@@ -106,33 +106,39 @@ fn of_layer(query: &Query, file: &ExrFile, layer: &ExrLayer) -> Result<Picture> 
         say(&format!("there are no R, G and B: showing {}", layer.name));
     }
     if layer.color().is_none() {
-        refuse_curves(query, &layer.name)?;
+        refuse_color_flags(query, &layer.name)?;
     }
     let tone = Tone::ALL.into_iter().find(|tone| Some(tone.name()) == query.tone.as_deref()).unwrap_or_default();
     let exposure = Exposure { stops: query.exposure.unwrap_or(0.0), tone };
-    let (picture, said) = Picture::of_layer(file, layer, exposure);
-    said.iter().for_each(|line| say(line));
+    let (picture, notes) = Picture::of_layer(file, layer, exposure);
+    notes.iter().for_each(|line| say(line));
     if let (None, Some(found)) = (&query.layer, Misexposure::of_layer(file, layer, exposure)) {
         say(&format!("{}: --exposure {} shows more", found.shows.told_of("it"), found.stops));
     }
     Ok(picture)
 }
 
-/// Returns the mattes named `wanted` as a picture, or a single one of them. `unknown` is the error for a name that does
+/// Returns the mattes named `name` as a picture, or a single one of them. `unknown` is the error for a name that does
 /// not exist.
-fn of_mattes(query: &Query, wanted: Option<&str>, file: &ExrFile, shown: &str, unknown: Error) -> Result<Picture> {
-    let Some(wanted) = wanted else { return Err(unknown) };
+fn mattes_picture(
+    query: &Query,
+    name: Option<&str>,
+    file: &ExrFile,
+    file_name: &str,
+    unknown: Error,
+) -> Result<Picture> {
+    let Some(name) = name else { return Err(unknown) };
     let all = Mattes::all(file);
-    let Some((mattes, one)) = Mattes::named(&all, wanted) else {
+    let Some((mattes, one)) = Mattes::named(&all, name) else {
         let names: Vec<&str> = all.iter().map(Mattes::name).collect();
-        return Err(if names.is_empty() { unknown } else { file.no_layer(wanted, shown, &names) });
+        return Err(if names.is_empty() { unknown } else { file.no_layer(name, file_name, &names) });
     };
-    let picture = one.map_or_else(|| Ok(mattes.picture()), |name| mattes.matte(name, shown));
-    refuse_curves(query, wanted).and(picture)
+    let picture = one.map_or_else(|| Ok(mattes.picture()), |name| mattes.matte(name, file_name));
+    refuse_color_flags(query, name).and(picture)
 }
 
 /// Refuses an exposure or a tone curve for something without colors.
-fn refuse_curves(query: &Query, name: &str) -> Result<()> {
+fn refuse_color_flags(query: &Query, name: &str) -> Result<()> {
     let given = [("--exposure", query.exposure.is_some()), ("--tone", query.tone.is_some())];
     match given.iter().find(|(_, given)| *given) {
         Some((flag, _)) => Error::refuse(format!("{flag} is for colors, and {name} has none"), "leave it out"),

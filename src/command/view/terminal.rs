@@ -10,53 +10,53 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 
 /// The number of columns of a terminal that does not tell it.
-const COLUMNS: usize = 80;
+const DEFAULT_COLUMNS: usize = 80;
 /// The approximate width of a column in pixels, on terminals that show pixels.
-const PIXELS_OF_COLUMN: usize = 8;
+const COLUMN_WIDTH: usize = 8;
 /// The maximum number of bytes of data in an escape sequence of the kitty graphics protocol.
-const CHUNK: usize = 4096;
+const MAX_CHUNK_BYTES: usize = 4096;
 /// The levels of red, green and blue in sixels. Terminals have 256 colors at once.
 const LEVELS: usize = 6;
 
 /// Returns the text that draws a picture on the terminal of stdout, and no wider than that.
-pub fn drawn(picture: &Picture, sixel: bool) -> Result<String> {
+pub fn draw(picture: &Picture, sixel: bool) -> Result<String> {
     let columns = columns();
-    let pixels = fitted(picture, columns * PIXELS_OF_COLUMN, 1);
+    let pixels = fitted(picture, columns * COLUMN_WIDTH, 1);
     Ok(match () {
         () if sixel => sixels(&pixels),
-        () if knows_kitty() => kitty(&pixels.png()?, columns.min(pixels.width().div_ceil(PIXELS_OF_COLUMN))),
+        () if supports_kitty() => kitty(&pixels.png()?, columns.min(pixels.width().div_ceil(COLUMN_WIDTH))),
         () => blocks(&fitted(picture, columns, 2)),
     })
 }
 
 fn columns() -> usize {
-    let seen = terminal_size::terminal_size_of(std::io::stdout()).map(|(width, _)| usize::from(width.0));
-    let told = || var_os("COLUMNS").and_then(|columns| columns.to_str()?.parse().ok());
-    seen.or_else(told).filter(|columns| (1..10_000).contains(columns)).unwrap_or(COLUMNS)
+    let measured = terminal_size::terminal_size_of(std::io::stdout()).map(|(width, _)| usize::from(width.0));
+    let from_environment = || var_os("COLUMNS").and_then(|columns| columns.to_str()?.parse().ok());
+    measured.or_else(from_environment).filter(|columns| (1..10_000).contains(columns)).unwrap_or(DEFAULT_COLUMNS)
 }
 
 /// Returns whether the terminal says that it supports the kitty graphics protocol. Inside tmux and screen, none does.
-fn knows_kitty() -> bool {
-    let said = |name: &str, words: &[&str]| {
+fn supports_kitty() -> bool {
+    let env_contains = |name: &str, words: &[&str]| {
         let value = var_os(name).map(|value| value.to_string_lossy().to_lowercase()).unwrap_or_default();
         words.iter().any(|word| value.contains(word))
     };
-    let inside = var_os("TMUX").is_some() || said("TERM", &["screen", "tmux"]);
-    let known = var_os("KITTY_WINDOW_ID").is_some()
-        || said("TERM", &["kitty", "ghostty"])
-        || said("TERM_PROGRAM", &["kitty", "wezterm", "ghostty"]);
-    std::io::stdout().is_terminal() && known && !inside
+    let in_multiplexer = var_os("TMUX").is_some() || env_contains("TERM", &["screen", "tmux"]);
+    let is_known = var_os("KITTY_WINDOW_ID").is_some()
+        || env_contains("TERM", &["kitty", "ghostty"])
+        || env_contains("TERM_PROGRAM", &["kitty", "wezterm", "ghostty"]);
+    std::io::stdout().is_terminal() && is_known && !in_multiplexer
 }
 
-/// Scales a picture down to at most `most` pixels in width. Its new height is a multiple of `rows`, unless it had
+/// Scales a picture down to at most `max_width` pixels in width. Its new height is a multiple of `rows`, unless it had
 /// fewer.
-fn fitted(picture: &Picture, most: usize, rows: usize) -> Picture {
+fn fitted(picture: &Picture, max_width: usize, rows: usize) -> Picture {
     let [width, height] = [picture.width(), picture.height()];
-    if width <= most {
+    if width <= max_width {
         return picture.clone();
     }
-    let lines = (height * most).div_ceil(width).next_multiple_of(rows);
-    picture.scaled(most, lines.min(height))
+    let lines = (height * max_width).div_ceil(width).next_multiple_of(rows);
+    picture.scaled(max_width, lines.min(height))
 }
 
 /// Draws characters whose upper half is one pixel and whose lower half is another.
@@ -85,12 +85,12 @@ fn blocks(picture: &Picture) -> String {
 /// Draws with the kitty graphics protocol: a PNG in base64, in chunks, of which all but the last say that more follows.
 fn kitty(png: &[u8], columns: usize) -> String {
     let encoded = BASE64_STANDARD.encode(png);
-    let last = encoded.len().div_ceil(CHUNK) - 1;
+    let last = encoded.len().div_ceil(MAX_CHUNK_BYTES) - 1;
     let mut text = String::new();
-    for (number, start) in (0..encoded.len()).step_by(CHUNK).enumerate() {
+    for (number, start) in (0..encoded.len()).step_by(MAX_CHUNK_BYTES).enumerate() {
         let first = if number == 0 { format!("a=T,f=100,c={columns},") } else { String::new() };
         let more = u8::from(number < last);
-        let chunk = &encoded[start..(start + CHUNK).min(encoded.len())];
+        let chunk = &encoded[start..(start + MAX_CHUNK_BYTES).min(encoded.len())];
         let _ = write!(text, "\x1b_G{first}m={more};{chunk}\x1b\\");
     }
     text + "\n"
@@ -113,10 +113,10 @@ fn sixels(picture: &Picture) -> String {
         let _ = write!(text, "#{color};2;{r};{g};{b}");
     }
     for band in colors.chunks(6 * width) {
-        let mut there: Vec<usize> = band.to_vec();
-        there.sort_unstable();
-        there.dedup();
-        for color in there {
+        let mut used_colors: Vec<usize> = band.to_vec();
+        used_colors.sort_unstable();
+        used_colors.dedup();
+        for color in used_colors {
             let _ = write!(text, "#{color}");
             let bit = |x: usize, y: usize| u8::from(band.get(y * width + x) == Some(&color)) << y;
             let columns: Vec<u8> = (0..width).map(|x| 63 + (0..6).map(|y| bit(x, y)).sum::<u8>()).collect();
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn a_wide_picture_is_fitted_and_a_narrow_one_stays() {
         let picture = Picture::of_grays(100, vec![0.5; 100 * 50]);
-        let fitted_to = |most| (fitted(&picture, most, 2).width(), fitted(&picture, most, 2).height());
+        let fitted_to = |max_width| (fitted(&picture, max_width, 2).width(), fitted(&picture, max_width, 2).height());
         assert_eq!(fitted_to(40), (40, 20));
         assert_eq!(fitted_to(33), (33, 18));
         assert_eq!(fitted_to(200), (100, 50));
@@ -165,7 +165,7 @@ mod tests {
             let first = if number == 0 { "a=T,f=100,c=7," } else { "" };
             let more = u8::from(number + 1 < sequences.len());
             assert_eq!(keys, format!("{first}m={more}"));
-            assert!(chunk.len() <= CHUNK && (more == 0 || chunk.len().is_multiple_of(4)));
+            assert!(chunk.len() <= MAX_CHUNK_BYTES && (more == 0 || chunk.len().is_multiple_of(4)));
             data += chunk;
         }
         assert_eq!(sequences.len(), 4);

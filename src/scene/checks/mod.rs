@@ -10,7 +10,7 @@ mod view;
 use super::{Object, Scene, Visibility};
 use crate::spectrum::Curve;
 
-pub(super) use probe::{met_from_outside, ray_into};
+pub(super) use probe::{hit_from_outside, ray_into};
 
 /// Adds warnings about what is most likely not intended.
 pub(super) fn check(scene: &mut Scene<Curve>) {
@@ -18,7 +18,7 @@ pub(super) fn check(scene: &mut Scene<Curve>) {
         true => vec!["nothing emits light, so the image will be black".into()],
         false => unlit::unlit(scene),
     };
-    scene.is_dark_told = !dark.is_empty();
+    scene.has_dark_warning = !dark.is_empty();
     scene.warnings.extend(dark);
     scene.warnings.extend(on_surface::on_surface(scene));
     scene.warnings.extend(open_glass::open_glass(scene));
@@ -32,11 +32,11 @@ fn black_catchers(scene: &Scene<Curve>) -> Vec<String> {
     let is_black = |object: &&Object| scene.materials[object.material as usize].material.is_black();
     let catchers =
         scene.objects.iter().filter(|object| object.visibility == Visibility::ShadowCatcher).filter(is_black);
-    let told = |object: &Object| {
+    let warning = |object: &Object| {
         format!(
             "{} is black and catches no shadow: give it the reflectance of the surface that it stands in for",
             object.name
         )
     };
-    catchers.map(told).collect()
+    catchers.map(warning).collect()
 }

@@ -7,7 +7,7 @@ use crate::scene::Scene;
 use crate::spectrum::Curve;
 
 /// Maximum number of lights that are checked.
-const MOST: usize = 4096;
+const MAX_LIGHTS: usize = 4096;
 /// Fractions of the scene's size: the distance from which a place is probed, and the distance within which a surface
 /// counts as being there. The latter is far above rounding errors and far below anything intended.
 const STEP: f64 = 1e-7;
@@ -23,7 +23,7 @@ pub(super) fn on_surface(scene: &Scene<Curve>) -> Vec<String> {
         Light::Spot(spot) => Some((id, DVec3::from(spot.position))),
         Light::Area(_) | Light::Sun(_) | Light::Environment(_) => None,
     });
-    let (places, camera): (Vec<_>, _) = (places.take(MOST).collect(), scene.camera.position());
+    let (places, camera): (Vec<_>, _) = (places.take(MAX_LIGHTS).collect(), scene.camera.position());
     let boxes = scene.objects.iter().filter_map(|object| object.shape.bounds());
     let around = Bounds::around(places.iter().map(|place| place.1).chain([camera]));
     let around = boxes.fold(around, Bounds::union);

@@ -4,11 +4,11 @@
 //! sees. One find in either direction is enough. Light behind a clear body is not followed: a light gets the benefit of
 //! the doubt.
 
-use super::probe::met_from_outside;
+use super::probe::hit_from_outside;
 use super::view::{SurfaceSide, View};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
-use crate::math::{BranchKey, DVec3, Ray, Sampler, ball_surface, cosine_about, unit};
+use crate::math::{BranchKey, DVec3, Ray, Sampler, sample_cosine_about, sample_sphere, unit};
 use crate::scene::Scene;
 use crate::shape::{Shape, Sides, SurfacePoint};
 use crate::spectrum::Curve;
@@ -17,13 +17,13 @@ use crate::spectrum::Curve;
 const PATHS: u32 = 256;
 /// Points in all clear bodies that are tested for light from the sky.
 const POINTS: usize = 1024;
-/// Rays that look for a hole to the sky. If one of the first `FEW` finds a hole, it is not a small one.
-const LOOKS: u32 = 1 << 19;
-const FEW: u32 = 1 << 8;
+/// Rays that look for a hole to the sky. If one of the `FIRST_HOLE_RAYS` finds a hole, it is not a small one.
+const HOLE_RAYS: u32 = 1 << 19;
+const FIRST_HOLE_RAYS: u32 = 1 << 8;
 /// Number of rays after which no more lights are checked.
-const MOST_RAYS: u64 = 1 << 20;
+const MAX_RAYS: u64 = 1 << 20;
 /// Maximum number of lights that get a warning each.
-const TOLD: usize = 4;
+const MAX_WARNINGS: usize = 4;
 
 /// Returns a warning about each light of which nothing can be seen.
 pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
@@ -34,12 +34,12 @@ pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
     view.look(|view, places| {
         let reaches = |id: &LightId| places.iter().any(|place| reaches(view, &scene.lights[*id], place));
         dark.retain(|id| !reaches(id));
-        dark.is_empty() || view.rays.get() > MOST_RAYS
+        dark.is_empty() || view.rays.get() > MAX_RAYS
     });
     if view.places.is_empty() {
         return empty_view(&view).into_iter().collect();
     }
-    if view.rays.get() > MOST_RAYS {
+    if view.rays.get() > MAX_RAYS {
         return Vec::new();
     }
     let is_infinite = |id: &LightId| scene.lights[*id].is_infinite();
@@ -47,9 +47,9 @@ pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
         dark.retain(|id| !is_infinite(id));
     }
     let mut found: Vec<String> = dark.iter().filter_map(|&id| what_is_wrong(&view, id)).collect();
-    if found.len() > TOLD {
-        let more = found.len() - TOLD;
-        found.truncate(TOLD);
+    if found.len() > MAX_WARNINGS {
+        let more = found.len() - MAX_WARNINGS;
+        found.truncate(MAX_WARNINGS);
         found.push(format!("{more} more lights light nothing that the camera sees"));
     }
     found
@@ -59,8 +59,10 @@ pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
 fn empty_view(view: &View) -> Option<String> {
     let Scene { lights, hidden_lights, .. } = view.scene;
     let shows_sky = (0..lights.len()).any(|id| lights[id].is_infinite() && !hidden_lights.contains(&id));
-    let is_empty =
-        !lights.is_empty() && !shows_sky && view.first_met().all(|met| met.is_none()) && !view.may_miss_an_object();
+    let is_empty = !lights.is_empty()
+        && !shows_sky
+        && view.first_objects().all(|first| first.is_none())
+        && !view.may_miss_an_object();
     is_empty
         .then(|| "the camera sees no object: none of 576 rays hits one; `look_at` is the point that it looks at".into())
 }
@@ -68,23 +70,23 @@ fn empty_view(view: &View) -> Option<String> {
 /// Returns the name of the object that the camera is inside of, if it sees nothing but the inside of one object. That
 /// object is assumed to be opaque.
 fn around_the_camera(view: &View) -> Option<String> {
-    let mut met = view.first_met();
-    let (object, _) = met.next()??;
+    let mut first = view.first_objects();
+    let (object, _) = first.next()??;
     let is_opaque = !view.scene.is_clear(object) && !view.scene.material_of(object).is_see_through();
-    let is_inside = is_opaque && met.all(|met| met == Some((object, true)));
+    let is_inside = is_opaque && first.all(|first| first == Some((object, true)));
     is_inside.then(|| view.scene.objects[object as usize].name.clone())
 }
 
 /// Returns what is wrong with a light that no path from the camera has found.
 fn what_is_wrong(view: &View, id: LightId) -> Option<String> {
     let light = &view.scene.lights[id];
-    let why = match light {
-        _ if view.rays.get() > MOST_RAYS => return None,
-        _ if light.is_infinite() => (!reaches_a_clear_body(view, light)).then(|| unseen(light)),
-        _ => match paths_of(view, light) {
+    let problem = match light {
+        _ if view.rays.get() > MAX_RAYS => return None,
+        _ if light.is_infinite() => (!reaches_a_clear_body(view, light)).then(|| unseen_text(light)),
+        _ => match trace_paths(view, light) {
             Paths::Seen => None,
-            Paths::PastEverything => Some(past_everything(light)),
-            Paths::Unseen => Some(unseen(light)),
+            Paths::PastEverything => Some(past_everything_text(light)),
+            Paths::Unseen => Some(unseen_text(light)),
         },
     }?;
     let name = name(view.scene, id);
@@ -92,7 +94,7 @@ fn what_is_wrong(view: &View, id: LightId) -> Option<String> {
         Some(body) => {
             format!("{name} lights nothing that the camera sees: the camera is inside {body}, which is opaque")
         }
-        None => format!("{name} {why}"),
+        None => format!("{name} {problem}"),
     })
 }
 
@@ -109,19 +111,19 @@ enum Paths {
 /// Returns whether a light reaches a place, or is itself at that place.
 fn reaches(view: &View, light: &Light<Curve>, place: &SurfaceSide) -> bool {
     let digits = place.point.position.to_array().map(|x| x.to_bits() as u32);
-    let [u, v, ..] = Sampler::new(2, [digits[0], digits[1]], digits[2]).four_plain(BranchKey::CAMERA, 0);
-    let lit = || {
+    let [u, v, ..] = Sampler::new(2, [digits[0], digits[1]], digits[2]).get_random_4d(BranchKey::CAMERA, 0);
+    let sample_reaches = || {
         let sample = light.sample_li(&place.point, place.normal, [u, v]).filter(|sample| sample.factor > 0.0)?;
-        let above = sample.ray.direction.dot(place.normal) > 0.0;
-        Some(above && !view.is_occluded(&sample.ray, sample.distance, sample.object))
+        let is_above = sample.ray.direction.dot(place.normal) > 0.0;
+        Some(is_above && !view.is_occluded(&sample.ray, sample.distance, sample.object))
     };
     // Nearly all samples of a sky image may go toward its sun.
     let sees_sky = || {
-        let direction = cosine_about(place.normal, [u, v]);
+        let direction = sample_cosine_about(place.normal, [u, v]);
         let shines = matches!(light, Light::Environment(sky) if sky.shines_toward(direction));
         shines && !view.is_occluded(&place.point.leave(direction), f64::INFINITY, None)
     };
-    place.shines(light) || lit() == Some(true) || sees_sky()
+    place.shines(light) || sample_reaches() == Some(true) || sees_sky()
 }
 
 /// Returns whether light from a sky reaches a clear body, which may send it anywhere.
@@ -131,10 +133,10 @@ fn reaches_a_clear_body(view: &View, light: &Light<Curve>) -> bool {
     (0..POINTS).filter(|_| !boxes.is_empty()).any(|number| {
         let sampler = Sampler::new(4, [number as u32, 0], 0);
         let ([x, y, z, _], [u, v, ..]) =
-            (sampler.four_plain(BranchKey::CAMERA, 0), sampler.four_plain(BranchKey::CAMERA, 1));
+            (sampler.get_random_4d(BranchKey::CAMERA, 0), sampler.get_random_4d(BranchKey::CAMERA, 1));
         let bounds = boxes[number % boxes.len()];
         let origin = bounds.min + bounds.size() * DVec3::new(x, y, z);
-        let sample = light.sample_li(&SurfacePoint::in_space(origin), ball_surface([u, v]), [z, x]);
+        let sample = light.sample_li(&SurfacePoint::in_space(origin), sample_sphere([u, v]), [z, x]);
         sample.is_some_and(|sample| !view.is_occluded(&sample.ray, f64::INFINITY, None))
     })
 }
@@ -144,20 +146,20 @@ fn reaches_a_clear_body(view: &View, light: &Light<Curve>) -> bool {
 fn sees_through_a_hole(view: &View) -> bool {
     let sees = |number: u32| {
         let place = &view.places[number as usize % view.places.len()];
-        let [u, v, ..] = Sampler::new(5, [number, 0], 0).four_plain(BranchKey::CAMERA, 0);
-        let ray = place.point.leave(cosine_about(place.normal, [u, v]));
+        let [u, v, ..] = Sampler::new(5, [number, 0], 0).get_random_4d(BranchKey::CAMERA, 0);
+        let ray = place.point.leave(sample_cosine_about(place.normal, [u, v]));
         !view.is_occluded(&ray, f64::INFINITY, None)
     };
-    !(0..FEW).any(sees) && (FEW..LOOKS).any(sees)
+    !(0..FIRST_HOLE_RAYS).any(sees) && (FIRST_HOLE_RAYS..HOLE_RAYS).any(sees)
 }
 
 /// Traces paths from a lamp, a point light or a spotlight.
-fn paths_of(view: &View, light: &Light<Curve>) -> Paths {
+fn trace_paths(view: &View, light: &Light<Curve>) -> Paths {
     let own = if let Light::Area(area) = light { Some(area.object) } else { None };
     let mut meets_others = false;
     for number in 0..PATHS {
         let sampler = Sampler::new(3, [number, 0], 0);
-        let Some(Start { ray, surface }) = start(light, &sampler) else { continue };
+        let Some(Start { ray, surface }) = sample_start(light, &sampler) else { continue };
         if surface.is_some_and(|place| view.is_in_view(&place)) {
             return Paths::Seen;
         }
@@ -184,26 +186,26 @@ struct Start {
     surface: Option<SurfaceSide>,
 }
 
-fn start(light: &Light<Curve>, sampler: &Sampler) -> Option<Start> {
-    let [u, v, ..] = sampler.four_plain(BranchKey::CAMERA, 1);
+fn sample_start(light: &Light<Curve>, sampler: &Sampler) -> Option<Start> {
+    let [u, v, ..] = sampler.get_random_4d(BranchKey::CAMERA, 1);
     let from_point =
         |origin: [f64; 3], direction| Start { ray: Ray { origin: origin.into(), direction }, surface: None };
     match light {
-        Light::Area(area) => start_on(area, sampler),
-        Light::Point(point) => Some(from_point(point.position, ball_surface([u, v]))),
+        Light::Area(area) => sample_lamp_start(area, sampler),
+        Light::Point(point) => Some(from_point(point.position, sample_sphere([u, v]))),
         Light::Spot(spot) => Some(from_point(spot.position, unit(spot.cone().sample_uniform([u, v])))),
         Light::Environment(_) | Light::Sun(_) => None,
     }
 }
 
 /// Samples a point of a lamp by a ray from outside, and a cosine-distributed direction from there.
-fn start_on(area: &Area<Curve>, sampler: &Sampler) -> Option<Start> {
-    let [x, y, z, _] = sampler.four_plain(BranchKey::CAMERA, 1);
-    let [a, b, c, d] = sampler.four_plain(BranchKey::CAMERA, 2);
-    let (point, direction) = met_from_outside(&area.shape, DVec3::new(x, y, z), [a, b])?;
+fn sample_lamp_start(area: &Area<Curve>, sampler: &Sampler) -> Option<Start> {
+    let [x, y, z, _] = sampler.get_random_4d(BranchKey::CAMERA, 1);
+    let [a, b, c, d] = sampler.get_random_4d(BranchKey::CAMERA, 2);
+    let (point, direction) = hit_from_outside(&area.shape, DVec3::new(x, y, z), [a, b])?;
     let back = area.sides == Sides::Both && point.normal.dot(direction) > 0.0;
     let normal = if back { -point.normal } else { point.normal };
-    let ray = point.leave(cosine_about(normal, [c, d]));
+    let ray = point.leave(sample_cosine_about(normal, [c, d]));
     Some(Start { ray, surface: Some(SurfaceSide { point, normal, object: area.object }) })
 }
 
@@ -223,7 +225,7 @@ fn is_closed_mesh(shape: &Shape) -> bool {
     matches!(shape, Shape::Mesh(_) | Shape::Instance(_)) && shape.is_closed()
 }
 
-fn past_everything(light: &Light<Curve>) -> &'static str {
+fn past_everything_text(light: &Light<Curve>) -> &'static str {
     match light {
         Light::Area(area) if area.sides == Sides::Front && is_closed_mesh(&area.shape) => {
             "shines only into its own inside: reverse the corners of its faces, or write sides = \"both\""
@@ -236,7 +238,7 @@ fn past_everything(light: &Light<Curve>) -> &'static str {
     }
 }
 
-fn unseen(light: &Light<Curve>) -> &'static str {
+fn unseen_text(light: &Light<Curve>) -> &'static str {
     match light {
         Light::Area(area) if area.sides == Sides::Front => {
             "lights nothing that the camera sees: turn its front around, write sides = \"both\", or move it out from \

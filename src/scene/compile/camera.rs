@@ -3,15 +3,15 @@
 use std::ops::Bound;
 
 use super::context::Context;
-use super::measures::{MAX_LENGTH, direction, length, narrow, point};
+use super::measures::{MAX_LENGTH, direction, length, point, radians_hint};
 use crate::math::DVec3;
-use crate::scene::text::{Fields, Value, above_0_to, at, shown};
+use crate::scene::text::{Fields, Value, above_0_to, at, six_digits};
 use crate::scene::{Camera, FilmSettings, Lens, PolarizingFilter, Projection};
 
 /// Smallest focus distance. The slope by which a lens bends rays, its radius over this distance, stays within f64.
-const NEAREST_FOCUS: f64 = 1e-30;
+const MIN_FOCUS_DISTANCE: f64 = 1e-30;
 /// Widest sensor, in mm: a kilometer.
-const WIDEST_SENSOR: f64 = 1e6;
+const MAX_SENSOR_WIDTH: f64 = 1e6;
 /// Largest shift, in heights of the image.
 const MAX_SHIFT: f64 = 1000.0;
 
@@ -92,19 +92,19 @@ fn projection(context: &mut Context, camera: &mut Fields, kind: Option<Projectio
         (ProjectionKind::Perspective, Some(value), None) => {
             let between = (Bound::Excluded(0.0), Bound::Excluded(180.0));
             let vertical_fov = value.within(between, "a field of view lies between 0 and 180 degrees", None)?;
-            if let Some(radians) = narrow(vertical_fov) {
+            if let Some(radians) = radians_hint(vertical_fov) {
                 context.warn_at(value, format!("a field of view of {vertical_fov} degrees is very narrow{radians}"));
             }
             Some(Projection::Perspective { vertical_fov })
         }
-        (ProjectionKind::Perspective, None, None) => camera.lack("vertical_fov", None),
+        (ProjectionKind::Perspective, None, None) => camera.report_missing("vertical_fov", None),
         (ProjectionKind::Orthographic, Some(value), _) => {
-            value.advise("an orthographic camera has no field of view", HEIGHT)
+            value.advise("an orthographic camera has no field of view", HEIGHT_HELP)
         }
         (ProjectionKind::Orthographic, None, Some(height)) => {
             Some(Projection::Orthographic { height: length(height, "the height of a view")? })
         }
-        (ProjectionKind::Orthographic, None, None) => camera.lack("height", Some(HEIGHT)),
+        (ProjectionKind::Orthographic, None, None) => camera.report_missing("height", Some(HEIGHT_HELP)),
         (ProjectionKind::Equirectangular, ..) => match keys.into_iter().flatten().next() {
             Some(value) => {
                 let message = format!("an equirectangular camera sees the full sphere and has no {}", value.key());
@@ -121,8 +121,8 @@ fn sensor_width(value: Value, kind: ProjectionKind) -> Option<f64> {
         ProjectionKind::Perspective => {
             let help = "in millimeters: 36 for a full-frame camera, 24.9 for Super 35";
             value.within(
-                above_0_to(WIDEST_SENSOR),
-                &format!("a sensor width is above 0 and at most {WIDEST_SENSOR:e} mm"),
+                above_0_to(MAX_SENSOR_WIDTH),
+                &format!("a sensor width is above 0 and at most {MAX_SENSOR_WIDTH:e} mm"),
                 Some(help),
             )
         }
@@ -130,7 +130,7 @@ fn sensor_width(value: Value, kind: ProjectionKind) -> Option<f64> {
     }
 }
 
-const HEIGHT: &str = "give the height of the view in scene units: height = 2";
+const HEIGHT_HELP: &str = "give the height of the view in scene units: height = 2";
 
 fn shift(value: Value) -> Option<[f64; 2]> {
     let shift: [f64; 2] = value.as_list("", "write [right, up] in image heights").numbers()?;
@@ -153,12 +153,12 @@ fn lens(value: Value, far: Option<f64>) -> Option<Lens> {
             value.within(0.0..=MAX_LENGTH, &format!("the radius of a lens is a length from 0 to {MAX_LENGTH:e}"), None)
         });
         let Some(focus) = lens.get("focus_distance") else {
-            let help = far.map(|far| format!("`look_at` is {} scene units away", shown(far)));
-            return lens.lack("focus_distance", help.as_deref());
+            let help = far.map(|far| format!("`look_at` is {} scene units away", six_digits(far)));
+            return lens.report_missing("focus_distance", help.as_deref());
         };
         let help = "write inf to focus at infinity";
-        let what = format!("a focus distance is at least {NEAREST_FOCUS:e}");
-        let focus = focus.within(NEAREST_FOCUS..=f64::INFINITY, &what, Some(help));
+        let rule = format!("a focus distance is at least {MIN_FOCUS_DISTANCE:e}");
+        let focus = focus.within(MIN_FOCUS_DISTANCE..=f64::INFINITY, &rule, Some(help));
         Some(Lens::new(radius?, focus?))
     })
 }

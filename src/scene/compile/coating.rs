@@ -1,13 +1,13 @@
 //! Layers in which light interferes, as authors write them.
 
-use super::asked::{Asked, spectrum, spectrum_or};
+use super::asked::{SpectrumDraft, spectrum, spectrum_or};
 use crate::material::{Coating, CoatingLayer, MAX_LAYERS, Thin};
 use crate::scene::text::{Fields, Value};
 
 const EXAMPLE: &str = "write coating = [{ index = 1.38, thickness_nm = 100 }, ..], from the outside inward";
 
 /// Reads the coating of a material, if it has one. Returns none if it is wrong, which is recorded as a mistake.
-pub(super) fn coating<'d>(fields: &mut Fields<'d>) -> Option<Option<Coating<Asked<'d>>>> {
+pub(super) fn coating<'d>(fields: &mut Fields<'d>) -> Option<Option<Coating<SpectrumDraft<'d>>>> {
     let Some(value) = fields.get("coating") else { return Some(None) };
     if !value.node().is_array() {
         return value.advise("a coating is a list of layers", EXAMPLE);
@@ -19,20 +19,20 @@ pub(super) fn coating<'d>(fields: &mut Fields<'d>) -> Option<Option<Coating<Aske
     Some((!layers.is_empty()).then(|| Coating::new(layers)))
 }
 
-fn layer(value: Value) -> Option<CoatingLayer<Asked>> {
-    Fields::read(value, layer_of)
+fn layer(value: Value) -> Option<CoatingLayer<SpectrumDraft>> {
+    Fields::read(value, layer_from_fields)
 }
 
-fn layer_of<'d>(fields: &mut Fields<'d>) -> Option<CoatingLayer<Asked<'d>>> {
+fn layer_from_fields<'d>(fields: &mut Fields<'d>) -> Option<CoatingLayer<SpectrumDraft<'d>>> {
     let thickness = spectrum(fields, "thickness_nm");
     let [metal, n, index, k] = ["metal", "n", "index", "k"].map(|key| fields.get(key));
     let (index, k) = match (metal, n) {
         (None, None) => (spectrum(fields, "index"), spectrum_or(fields, "k", 0.0)),
         (Some(metal), None) if index.is_none() && k.is_none() => {
-            let metal = Asked::There(metal.text().map(|_| metal)?);
+            let metal = SpectrumDraft::Given(metal.text().map(|_| metal)?);
             (metal, metal)
         }
-        (None, Some(n)) if index.is_none() => (Asked::There(n), spectrum(fields, "k")),
+        (None, Some(n)) if index.is_none() => (SpectrumDraft::Given(n), spectrum(fields, "k")),
         (Some(given), _) | (None, Some(given)) => {
             return given.refuse("a layer has an `index` with an optional `k`, or a `metal`, or both `n` and `k`");
         }
@@ -42,7 +42,7 @@ fn layer_of<'d>(fields: &mut Fields<'d>) -> Option<CoatingLayer<Asked<'d>>> {
 
 /// Reads a pane, or a film of one layer if there is a thickness, a `metal` or an `n`. Returns none if its keys do not
 /// fit together, which is recorded as a mistake.
-pub(super) fn thin<'d>(fields: &mut Fields<'d>) -> Option<Thin<Asked<'d>>> {
+pub(super) fn thin<'d>(fields: &mut Fields<'d>) -> Option<Thin<SpectrumDraft<'d>>> {
     let index = fields.get("index");
     let (transmittance, thickness) = (fields.get("transmittance"), fields.get("thickness_nm"));
     let [k, metal, n] = ["k", "metal", "n"].map(|key| fields.get(key));
@@ -61,5 +61,5 @@ pub(super) fn thin<'d>(fields: &mut Fields<'d>) -> Option<Thin<Asked<'d>>> {
         return transmittance
             .refuse_key("a film has a `thickness_nm` or a `transmittance`, not both", Some(help.into()));
     }
-    Some(Thin::Film(Coating::new(vec![layer_of(fields)?])))
+    Some(Thin::Film(Coating::new(vec![layer_from_fields(fields)?])))
 }

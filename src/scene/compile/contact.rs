@@ -1,8 +1,8 @@
 //! Clear bodies and flat lamps that share a part of their surface with another object.
 
 use super::context::Context;
-use super::near_pairs::{MOST_PAIRS, NEAR, near_pairs};
-use super::place::Placed;
+use super::near_pairs::{MAX_PAIRS, NEAR, near_pairs};
+use super::place::PlacedObjects;
 use crate::material::Material;
 use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Object;
@@ -12,12 +12,12 @@ use crate::shape::{Plane, Shape};
 /// Rays by which two bodies are compared: enough to find a shared part that is a fiftieth of the visible surface.
 const RAYS: u32 = 256;
 /// Maximum number of surfaces of a body that a ray is followed through.
-const DEEP: usize = 4;
+const MAX_SURFACES: usize = 4;
 
 /// Reports objects that share a surface. Clear bodies may overlap but not share a surface, since rounding would decide
 /// which of the two a ray hits. A flat lamp that lies in another surface may be invisible.
-pub(super) fn contacts(context: &mut Context, placed: &Placed) {
-    for (first, second) in coinciding(placed) {
+pub(super) fn contacts(context: &mut Context, placed: &PlacedObjects) {
+    for (first, second) in coinciding_pairs(placed) {
         let [body, other] = [first, second].map(|number| &placed.objects[number]);
         let (name, other_name) = (&body.name, &other.name);
         if placed.is_clear(body) && placed.is_clear(other) {
@@ -42,7 +42,7 @@ pub(super) fn contacts(context: &mut Context, placed: &Placed) {
 }
 
 /// Returns whether an object is a lamp that has no inside.
-fn is_flat_lamp(placed: &Placed, object: &Object) -> bool {
+fn is_flat_lamp(placed: &PlacedObjects, object: &Object) -> bool {
     let shines = matches!(placed.material(object).material, Material::Emissive(_));
     shines && matches!(*object.shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_))
 }
@@ -50,21 +50,21 @@ fn is_flat_lamp(placed: &Placed, object: &Object) -> bool {
 /// Returns the pairs of objects whose surfaces partly coincide. The first one is a clear body or a flat lamp.
 ///
 /// A ray that leaves one of them starts beyond the other and never hits it (row M2 of the stability catalog).
-fn coinciding(placed: &Placed) -> Vec<(usize, usize)> {
+fn coinciding_pairs(placed: &PlacedObjects) -> Vec<(usize, usize)> {
     let objects = &placed.objects;
-    let counting: Vec<bool> =
+    let is_checked: Vec<bool> =
         objects.iter().map(|object| placed.is_clear(object) || is_flat_lamp(placed, object)).collect();
     let boxes: Vec<Option<Bounds>> = objects.iter().map(|object| object.shape.bounds()).collect();
-    let mut pairs = near_pairs(&boxes, &counting);
-    pairs.extend(with_planes(objects, &counting).take(MOST_PAIRS));
+    let mut pairs = near_pairs(&boxes, &is_checked);
+    pairs.extend(pairs_with_planes(objects, &is_checked).take(MAX_PAIRS));
     pairs.sort_unstable();
-    pairs.retain(|&(first, second)| share_a_surface(&objects[first], &objects[second]));
+    pairs.retain(|&(first, second)| share_surface(&objects[first], &objects[second]));
     pairs
 }
 
-/// Returns the pairs of an object marked in `counting` and a plane that cuts its box or lies beside it. Two planes
+/// Returns the pairs of an object marked in `is_checked` and a plane that cuts its box or lies beside it. Two planes
 /// always make a pair, since they may be the same.
-fn with_planes(objects: &[Object], counting: &[bool]) -> impl Iterator<Item = (usize, usize)> {
+fn pairs_with_planes(objects: &[Object], is_checked: &[bool]) -> impl Iterator<Item = (usize, usize)> {
     let plane = |number: usize| match &*objects[number].shape {
         Shape::Plane(plane) => Some((number, plane)),
         _ => None,
@@ -73,15 +73,15 @@ fn with_planes(objects: &[Object], counting: &[bool]) -> impl Iterator<Item = (u
     let pair = move |first: usize, &(second, plane): &(usize, &Plane)| {
         let is_near = match objects[first].shape.bounds() {
             Some(bounds) => plane.meets(&bounds, NEAR),
-            None => first < second || first > second && !counting[second],
+            None => first < second || first > second && !is_checked[second],
         };
         is_near.then_some((first, second))
     };
-    let those_that_count = (0..objects.len()).filter(|&number| counting[number]);
-    those_that_count.flat_map(move |first| planes.iter().filter_map(|plane| pair(first, plane)).collect::<Vec<_>>())
+    let checked = (0..objects.len()).filter(|&number| is_checked[number]);
+    checked.flat_map(move |first| planes.iter().filter_map(|plane| pair(first, plane)).collect::<Vec<_>>())
 }
 
-fn share_a_surface(body: &Object, other: &Object) -> bool {
+fn share_surface(body: &Object, other: &Object) -> bool {
     if let (Shape::Plane(one), Shape::Plane(another)) = (&*body.shape, &*other.shape) {
         return one.coincides(another, NEAR);
     }
@@ -94,17 +94,17 @@ fn share_a_surface(body: &Object, other: &Object) -> bool {
     let size = bounds.size().length();
     let step = 1e-3 * size;
     (0..RAYS).any(|number| {
-        let [u, v, x, y] = Sampler::new(0, [0, 0], number).four(BranchKey::CAMERA, 0);
-        let [z, ..] = Sampler::new(0, [1, 0], number).four(BranchKey::CAMERA, 0);
+        let [u, v, x, y] = Sampler::new(0, [0, 0], number).get_4d(BranchKey::CAMERA, 0);
+        let [z, ..] = Sampler::new(0, [1, 0], number).get_4d(BranchKey::CAMERA, 0);
         let Some(mut ray) = ray_into(&bounds, DVec3::new(x, y, z), [u, v]) else { return false };
         let direction = ray.direction;
-        for _ in 0..DEEP {
+        for _ in 0..MAX_SURFACES {
             let Some(intersection) = body.shape.intersect(&ray, f64::INFINITY) else { return false };
             let point = body.shape.point(&ray, &intersection);
             let before = Ray { origin: point.position - direction * step, direction };
-            if let Some(met) = other.shape.intersect(&before, step + NEAR * size) {
-                let parallel = other.shape.point(&before, &met).normal.cross(point.normal).length() < 1e-6;
-                if met.t >= step - NEAR * size && parallel {
+            if let Some(hit) = other.shape.intersect(&before, step + NEAR * size) {
+                let parallel = other.shape.point(&before, &hit).normal.cross(point.normal).length() < 1e-6;
+                if hit.t >= step - NEAR * size && parallel {
                     return true;
                 }
             }

@@ -17,7 +17,7 @@ use crate::spectrum::{Channel, Image};
 pub(super) struct Context {
     warnings: Vec<Warning>,
     /// Warnings about values. A value may be read for two purposes, but is warned about once.
-    warned: HashSet<Warning>,
+    value_warnings: HashSet<Warning>,
     /// Hash of the scene's texts and of the files that they name.
     pub(super) hash: Sha256,
     /// The files that the texts name and that have been read.
@@ -33,7 +33,7 @@ pub(super) struct Context {
     /// Meshes by their file and whether they are smooth.
     pub(super) meshes: HashMap<(PathBuf, bool), Arc<Mesh>>,
     /// Meshes whose normals are averages of those of their faces.
-    pub(super) averaged: HashSet<*const Mesh>,
+    pub(super) averaged_meshes: HashSet<*const Mesh>,
 }
 
 /// A message for the author, and the place of its cause.
@@ -49,7 +49,7 @@ impl Context {
     }
 
     /// Records a file that has been read.
-    pub(super) fn has_read(&mut self, file: PathBuf, bytes: &[u8]) {
+    pub(super) fn record_file(&mut self, file: PathBuf, bytes: &[u8]) {
         self.hash.update(bytes);
         self.files.push(file);
     }
@@ -61,24 +61,24 @@ impl Context {
     /// Warns about a value, with its place in the text.
     pub(super) fn warn_at(&mut self, place: Value, message: impl Into<String>) {
         let warning = Warning { place: Some(place.span()), message: message.into() };
-        if self.warned.insert(warning.clone()) {
+        if self.value_warnings.insert(warning.clone()) {
             self.warnings.push(warning);
         }
     }
 
     pub(super) fn warnings(&self, document: &Document) -> Vec<String> {
         let places = self.warnings.iter().filter_map(|warning| warning.place.clone());
-        let paths = match document.texts.told_by {
-            LocatedBy::Line => document.texts.named_all(places),
+        let paths = match document.texts.located_by {
+            LocatedBy::Line => document.texts.place_names(places),
             LocatedBy::Key => document.paths(places),
         };
-        let told = |Warning { place, message }: &Warning| match place {
+        let format_warning = |Warning { place, message }: &Warning| match place {
             Some(place) => {
-                let place = paths.get(place).cloned().unwrap_or_else(|| document.texts.named(place.clone()));
+                let place = paths.get(place).cloned().unwrap_or_else(|| document.texts.place_name(place.clone()));
                 format!("{place}: {message}")
             }
             None => message.clone(),
         };
-        self.warnings.iter().map(told).collect()
+        self.warnings.iter().map(format_warning).collect()
     }
 }

@@ -1,16 +1,16 @@
 //! The values that are possible for the quantity that a spectrum describes.
 
-use crate::scene::text::{Fault, Value, shown};
+use crate::scene::text::{Fault, Value, six_digits};
 use crate::spectrum::Quantity;
 
 /// Largest emission: far within f32, which stores film and lanes.
 pub(super) const MAX_EMISSION: f64 = 1e30;
 /// Largest n and k: several times those of any metal in visible light.
-const MAX_METAL: f64 = 100.0;
+const MAX_METAL_INDEX: f64 = 100.0;
 /// Largest thickness of an interference layer, in nm: 100 um.
 const MAX_THICKNESS_NM: f64 = 1e5;
 /// A thickness below this many nm, far less than an atom, must be meant in another unit.
-const LEAST_THICKNESS_NM: f64 = 1e-3;
+const MIN_THICKNESS_NM: f64 = 1e-3;
 
 /// Why a spectrum cannot be used for a quantity.
 pub(super) struct CurveError {
@@ -36,8 +36,8 @@ impl CurveError {
         Self { entry: Some(entry), ..self }
     }
 
-    pub(super) fn tell<T>(self, place: Value) -> Option<T> {
-        place.tell(self.message, self.help)
+    pub(super) fn report<T>(self, place: Value) -> Option<T> {
+        place.report(self.message, self.help)
     }
 }
 
@@ -56,52 +56,51 @@ pub(super) fn is_factor(value: f64) -> bool {
 pub(super) fn factor(name: &str, value: f64) -> Result<(), CurveError> {
     let bound = match value {
         _ if value < 0.0 => "at least 0".to_owned(),
-        _ if value > MAX_EMISSION => format!("at most {}", shown(MAX_EMISSION)),
+        _ if value > MAX_EMISSION => format!("at most {}", six_digits(MAX_EMISSION)),
         _ => return Ok(()),
     };
-    Err(CurveError::new(format!("{name} is {bound}, not {}", shown(value))))
+    Err(CurveError::new(format!("{name} is {bound}, not {}", six_digits(value))))
 }
 
 /// Checks that a value is possible for a quantity. `place` says in the message where the value is.
-pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<(), CurveError> {
-    let name = article(quantity);
-    let (least, most, is_share) = match quantity {
+pub(super) fn check_value(quantity: Quantity, value: f64, place: &str) -> Result<(), CurveError> {
+    let name = name_with_article(quantity);
+    let (min, max, is_share) = match quantity {
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Excitation => (0.0, 1.0, true),
         Quantity::Emission | Quantity::Fluorescence => (0.0, MAX_EMISSION, false),
         Quantity::Index => (1.0, 10.0, false),
         Quantity::Absorption => (0.0, f64::MAX, false),
-        Quantity::MetalIndex => (f64::MIN_POSITIVE, MAX_METAL, false),
-        Quantity::MetalExtinction => (0.0, MAX_METAL, false),
-        Quantity::Thickness => return possible_thickness(value, place),
+        Quantity::MetalIndex => (f64::MIN_POSITIVE, MAX_METAL_INDEX, false),
+        Quantity::MetalExtinction => (0.0, MAX_METAL_INDEX, false),
+        Quantity::Thickness => return check_thickness(value, place),
     };
-    if (least..=most).contains(&value) {
+    if (min..=max).contains(&value) {
         return Ok(());
     }
-    let shown_value = shown(value);
+    let shown_value = six_digits(value);
     let refusal = CurveError::new(match quantity {
         Quantity::MetalIndex if value <= 0.0 => format!("{name} is above 0, not {shown_value}{place}"),
-        _ if value < least => format!("{name} is at least {least}, not {shown_value}{place}"),
-        _ => format!("{name} is at most {}, not {shown_value}{place}", shown(most)),
+        _ if value < min => format!("{name} is at least {min}, not {shown_value}{place}"),
+        _ => format!("{name} is at most {}, not {shown_value}{place}", six_digits(max)),
     });
     Err(match value {
         2.0..=100.0 if is_share => CurveError {
             is_percent: true,
-            ..refusal.help(format!("if this is in percent, write {}", shown(value / 100.0)))
+            ..refusal.help(format!("if this is in percent, write {}", six_digits(value / 100.0)))
         },
         100.0..=255.0 if is_share => {
             refusal.help("a color from 0 to 255 is sRGB: its linear value is about (v / 255)^2.2")
         }
-        0.55..=0.8 if quantity == Quantity::Index => {
-            refusal.help(format!("if this is the index around it divided by its own, write {}", shown(1.0 / value)))
-        }
+        0.55..=0.8 if quantity == Quantity::Index => refusal
+            .help(format!("if this is the index around it divided by its own, write {}", six_digits(1.0 / value))),
         _ => refusal,
     })
 }
 
 /// Checks that a layer's thickness in nm is neither too small for a layer nor too large for visible interference.
-pub(super) fn possible_thickness(nm: f64, place: &str) -> Result<(), CurveError> {
-    let (name, value) = (article(Quantity::Thickness), shown(nm));
-    if nm == 0.0 || (LEAST_THICKNESS_NM..=MAX_THICKNESS_NM).contains(&nm) {
+pub(super) fn check_thickness(nm: f64, place: &str) -> Result<(), CurveError> {
+    let (name, value) = (name_with_article(Quantity::Thickness), six_digits(nm));
+    if nm == 0.0 || (MIN_THICKNESS_NM..=MAX_THICKNESS_NM).contains(&nm) {
         return Ok(());
     }
     if nm < 0.0 {
@@ -114,21 +113,25 @@ pub(super) fn possible_thickness(nm: f64, place: &str) -> Result<(), CurveError>
     let refusal = CurveError::new(format!("{name} of {value} nm{place} is less than that of an atom"));
     let in_nm = nm * 1e9;
     let help = (1.0..=MAX_THICKNESS_NM).contains(&in_nm);
-    Err(if help { refusal.help(format!("it is in nm: if this is in m, write {}", shown(in_nm))) } else { refusal })
+    Err(if help { refusal.help(format!("it is in nm: if this is in m, write {}", six_digits(in_nm))) } else { refusal })
 }
 
 /// Returns a warning about a layer so thin that um were probably meant.
-pub(super) fn hardly_a_layer(nm: f64) -> Option<String> {
-    let is_thin = (LEAST_THICKNESS_NM..ONE_NM).contains(&nm);
+pub(super) fn thin_layer_warning(nm: f64) -> Option<String> {
+    let is_thin = (MIN_THICKNESS_NM..VISIBLE_THICKNESS_NM).contains(&nm);
     is_thin.then(|| {
-        format!("a layer of {} nm is too thin to be seen; if um are meant, write {}", shown(nm), shown(nm * 1e3))
+        format!(
+            "a layer of {} nm is too thin to be seen; if um are meant, write {}",
+            six_digits(nm),
+            six_digits(nm * 1e3)
+        )
     })
 }
 
 /// Thickness in nm below which no layer is visible.
-const ONE_NM: f64 = 1.0;
+const VISIBLE_THICKNESS_NM: f64 = 1.0;
 
-pub(super) fn article(quantity: Quantity) -> &'static str {
+pub(super) fn name_with_article(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Reflectance => "a reflectance",
         Quantity::Transmittance => "a transmittance",

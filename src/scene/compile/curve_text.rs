@@ -6,7 +6,7 @@ use crate::scene::text::{Fields, Spanned, Value, at, exactly};
 use crate::spectrum::{Channel, Encoding, Placement, Quantity, TexelFilter, Wrap};
 
 /// Maximum number of repetitions in a unit. One over it is the minimum.
-const MOST_REPEAT: f64 = 1e6;
+const MAX_REPEAT: f64 = 1e6;
 
 /// A spectrum as written, each value with its place in the text.
 #[derive(Clone)]
@@ -52,26 +52,28 @@ type SpectrumReader = for<'d> fn(Value<'d>) -> Option<KindText<'d>>;
 
 /// The keys that give the kind of a spectrum, and their readers. A table has exactly one of these keys.
 const KINDS: [(&str, SpectrumReader); 11] = [
-    ("rgb", |value| value.array(real).map(KindText::Rgb)),
+    ("rgb", |value| value.array(finite_number).map(KindText::Rgb)),
     ("samples", |value| pairs(value, "write [wavelength in nm, value]").map(KindText::Samples)),
     ("file", |value| value.text().map(KindText::File)),
-    ("cauchy", |value| value.as_list("", "write [A, B] of n = A + B / wavelength^2").array(real).map(KindText::Cauchy)),
+    ("cauchy", |value| {
+        value.as_list("", "write [A, B] of n = A + B / wavelength^2").array(finite_number).map(KindText::Cauchy)
+    }),
     ("sellmeier", |value| {
         Fields::read(value, |table| {
-            let b = table.need("b", at(|value: Value| value.list(real)));
-            let c = table.need("c", at(|value: Value| value.list(real)));
+            let b = table.need("b", at(|value: Value| value.list(finite_number)));
+            let c = table.need("c", at(|value: Value| value.list(finite_number)));
             Some(KindText::Sellmeier { b: b?, c: c? })
         })
     }),
     ("abbe", |value| {
         Fields::read(value, |table| {
-            let nd = table.need("nd", at(real));
-            let vd = table.need("vd", at(real));
+            let nd = table.need("nd", at(finite_number));
+            let vd = table.need("vd", at(finite_number));
             Some(KindText::Abbe { nd: nd?, vd: vd? })
         })
     }),
     ("illuminant", |value| value.text().map(KindText::Illuminant)),
-    ("blackbody", |value| real(value).map(KindText::Blackbody)),
+    ("blackbody", |value| finite_number(value).map(KindText::Blackbody)),
     ("lines", |value| pairs(value, "write [wavelength in nm, power]").map(KindText::Lines)),
     ("image", |value| value.text().map(KindText::Image)),
     ("checker", |value| {
@@ -84,20 +86,20 @@ const KINDS: [(&str, SpectrumReader); 11] = [
 fn pairs(value: Value, help: &'static str) -> Option<Vec<[f64; 2]>> {
     let lists = value.node().as_array().map(|lists| lists.iter().map(|list| list.get_ref().as_array()));
     let lengths: Vec<Option<usize>> = lists.into_iter().flatten().map(|list| list.map(|list| list.len())).collect();
-    let help = if matches!(lengths[..], [Some(a), Some(b)] if a == b) { ONE_OF_EACH } else { help };
-    value.list(|entry| entry.as_list("", help).array(real))
+    let help = if matches!(lengths[..], [Some(a), Some(b)] if a == b) { PAIRS_HELP } else { help };
+    value.list(|entry| entry.as_list("", help).array(finite_number))
 }
 
 /// The help for wavelengths and values that stand in two separate lists.
-pub(super) const ONE_OF_EACH: &str = "write a pair for each wavelength, as in [[400, 0.2], [700, 0.9]]";
+pub(super) const PAIRS_HELP: &str = "write a pair for each wavelength, as in [[400, 0.2], [700, 0.9]]";
 
 /// Reads a number that can be part of a spectrum.
-fn real(value: Value) -> Option<f64> {
+fn finite_number(value: Value) -> Option<f64> {
     let it = value.number()?;
-    finite(Spanned { place: value, it }).map(|()| it)
+    check_finite(Spanned { place: value, it }).map(|()| it)
 }
 
-pub(super) fn finite(Spanned { place, it }: Spanned<f64>) -> Option<()> {
+pub(super) fn check_finite(Spanned { place, it }: Spanned<f64>) -> Option<()> {
     if it.is_finite() { Some(()) } else { place.refuse(not_finite(it)) }
 }
 
@@ -105,10 +107,10 @@ pub(super) fn not_finite(x: f64) -> String {
     format!("a spectrum is made of finite numbers, not {x}")
 }
 
-const COLOR: &str = "{ rgb = [0.7, 0.5, 0.3] }";
+const COLOR_EXAMPLE: &str = "{ rgb = [0.7, 0.5, 0.3] }";
 
 /// Returns the keys that can give the kind of a spectrum of a quantity.
-fn fitting(quantity: Quantity) -> &'static [&'static str] {
+fn allowed_keys(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
         Quantity::Index => &["rgb", "samples", "file", "cauchy", "sellmeier", "abbe"],
         Quantity::Emission => &["rgb", "samples", "file", "illuminant", "blackbody", "lines", "image", "checker"],
@@ -122,20 +124,20 @@ fn fitting(quantity: Quantity) -> &'static [&'static str] {
 }
 
 /// Returns the keys that only spectra of other quantities can have.
-fn unfit(quantity: Quantity) -> impl Iterator<Item = &'static str> {
-    let fitting = fitting(quantity);
-    let varies = fitting.contains(&"image");
-    let has_file = fitting.contains(&"file");
+fn foreign_keys(quantity: Quantity) -> impl Iterator<Item = &'static str> {
+    let allowed_keys = allowed_keys(quantity);
+    let varies = allowed_keys.contains(&"image");
+    let has_file = allowed_keys.contains(&"file");
     let others =
         [("column", has_file), ("encoding", varies), ("channel", varies), ("wrap", varies), ("filter", varies)];
     let more = [("repeat", varies), ("luminance", quantity == Quantity::Emission)];
-    let kinds = KINDS.iter().map(move |(key, _)| (*key, fitting.contains(key)));
+    let kinds = KINDS.iter().map(move |(key, _)| (*key, allowed_keys.contains(key)));
     kinds.chain(others).chain(more).filter(|(_, fits)| !fits).map(|(key, _)| key)
 }
 
 /// Returns the message about a table without a kind.
-fn kinds_of(quantity: Quantity) -> String {
-    let names: Vec<_> = fitting(quantity).iter().map(|key| format!("`{key}`")).collect();
+fn missing_kind_message(quantity: Quantity) -> String {
+    let names: Vec<_> = allowed_keys(quantity).iter().map(|key| format!("`{key}`")).collect();
     let (others, last) = names.split_at(names.len() - 1);
     format!("a spectrum needs one of {} or {}", others.join(", "), last.concat())
 }
@@ -145,8 +147,8 @@ fn example(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Index => "\"N-BK7\" or { cauchy = [1.5046, 0.0042] }",
         Quantity::Emission => "{ illuminant = \"D65\" }",
-        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => COLOR,
-        Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => COLOR,
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => COLOR_EXAMPLE,
+        Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => COLOR_EXAMPLE,
         Quantity::Excitation | Quantity::Fluorescence => "{ samples = [[400, 0.2], [450, 0.9], [500, 0]] }",
         Quantity::Thickness => "{ image = \"thickness.png\", scale = 600 }",
     }
@@ -157,11 +159,11 @@ impl<'d> CurveText<'d> {
     pub(super) fn read(value: Value<'d>, quantity: Quantity) -> Option<Self> {
         match value.node() {
             DeValue::Integer(_) | DeValue::Float(_) => {
-                real(value).map(|number| Self::bare(value, KindText::Number(number)))
+                finite_number(value).map(|number| Self::plain(value, KindText::Number(number)))
             }
-            DeValue::String(name) => Some(Self::bare(value, KindText::Name(name))),
+            DeValue::String(name) => Some(Self::plain(value, KindText::Name(name))),
             DeValue::Table(_) => Fields::read(value, |table| curve_table(value, table, quantity)),
-            _ => value.wanted("a number, a catalog name in quotes, or a table such as { rgb = [r, g, b] }"),
+            _ => value.expected("a number, a catalog name in quotes, or a table such as { rgb = [r, g, b] }"),
         }
     }
 
@@ -171,17 +173,17 @@ impl<'d> CurveText<'d> {
         match self.kind {
             KindText::Name(_) => true,
             KindText::Number(_) => quantity != Quantity::Fluorescence,
-            _ => fitting(quantity).contains(&self.place.key()),
+            _ => allowed_keys(quantity).contains(&self.place.key()),
         }
     }
 
     /// Returns the placement of its image, if that is possible.
     pub(super) fn placement(&self) -> Option<Placement> {
-        Some(Placement { repeat: is_repeat(self.repeat)?, wrap: self.wrap, filter: self.filter })
+        Some(Placement { repeat: check_repeat(self.repeat)?, wrap: self.wrap, filter: self.filter })
     }
 
     /// Returns a spectrum that is not written as a table.
-    fn bare(value: Value<'d>, kind: KindText<'d>) -> Self {
+    fn plain(value: Value<'d>, kind: KindText<'d>) -> Self {
         let (scale, repeat) = (Spanned { place: value, it: 1.0 }, Spanned { place: value, it: [1.0; 2] });
         let (column, encoding, channel, luminance) = (None, None, None, None);
         let (wrap, filter) = (Wrap::default(), TexelFilter::default());
@@ -190,7 +192,7 @@ impl<'d> CurveText<'d> {
 }
 
 fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, quantity: Quantity) -> Option<CurveText<'d>> {
-    table.do_not_hint_at(unfit(quantity));
+    table.exclude_hints(foreign_keys(quantity));
     let kinds = KINDS.map(|(key, read)| table.get(key).map(|place| (place, read(place))));
     let column = table.maybe("column", at(|value: Value| value.whole(0..=u64::MAX)));
     let encoding = table.maybe("encoding", at(|value: Value| value.word(&ENCODINGS)));
@@ -203,7 +205,7 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, quantity: Quantity)
     let mut given = kinds.into_iter().flatten();
     let Some((place, kind)) = given.next() else {
         let help = format!("such as {}", example(quantity));
-        return if table.has_unknown() { None } else { value.advise(kinds_of(quantity), help) };
+        return if table.has_unknown() { None } else { value.advise(missing_kind_message(quantity), help) };
     };
     if let Some((other, _)) = given.next() {
         let message = format!("a spectrum has exactly one kind, not `{}` and `{}`", place.key(), other.key());
@@ -233,7 +235,7 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, quantity: Quantity)
 
 /// Reads how many copies of an image or a pattern there are in a unit of u and of v: one number or two.
 pub(super) fn repeat(value: Value) -> Option<[f64; 2]> {
-    is_repeat(Spanned { place: value, it: one_or_two(value)? })
+    check_repeat(Spanned { place: value, it: one_or_two(value)? })
 }
 
 fn one_or_two(value: Value) -> Option<[f64; 2]> {
@@ -241,11 +243,11 @@ fn one_or_two(value: Value) -> Option<[f64; 2]> {
 }
 
 /// Checks that numbers of copies in a unit are neither too large nor too small.
-pub(super) fn is_repeat(Spanned { place: value, it: repeat }: Spanned<[f64; 2]>) -> Option<[f64; 2]> {
-    match repeat.iter().find(|x| !(1.0 / MOST_REPEAT..=MOST_REPEAT).contains(*x)) {
+pub(super) fn check_repeat(Spanned { place: value, it: repeat }: Spanned<[f64; 2]>) -> Option<[f64; 2]> {
+    match repeat.iter().find(|x| !(1.0 / MAX_REPEAT..=MAX_REPEAT).contains(*x)) {
         Some(wrong) => value.refuse(format!(
-            "`repeat` is the number of copies in a unit, {:e} to {MOST_REPEAT:e}, not {wrong}",
-            1.0 / MOST_REPEAT
+            "`repeat` is the number of copies in a unit, {:e} to {MAX_REPEAT:e}, not {wrong}",
+            1.0 / MAX_REPEAT
         )),
         None => Some(repeat),
     }

@@ -81,7 +81,7 @@ fn overscan(value: Value) -> Option<Overscan> {
                 value.as_list("", "write [left, top, right, bottom]").array(Value::count)?;
             Some(Overscan { left, top, right, bottom })
         }
-        _ => value.wanted("a number of pixels or a list [left, top, right, bottom]"),
+        _ => value.expected("a number of pixels or a list [left, top, right, bottom]"),
     }
 }
 
@@ -90,8 +90,8 @@ const FILTER: Choice<for<'d> fn(Value<'d>) -> Option<Filter>> = Choice {
     name: "a filter",
     word: "filter",
     example: "{ gaussian = { sigma = 0.5 } }",
-    apart: "leave one of them out",
-    beside: &[],
+    second_kind_help: "leave one of them out",
+    outside_keys: &[],
     kinds: &[
         ("tent", |value| wide(value, "radius", |radius| Filter::Tent { radius })),
         ("gaussian", |value| wide(value, "sigma", |sigma| Filter::Gaussian { sigma })),
@@ -116,21 +116,21 @@ fn wide(value: Value, key: &'static str, filter: fn(f64) -> Filter) -> Option<Fi
 fn mitchell(value: Value) -> Option<Filter> {
     Fields::read(value, |table| {
         let parameter = |key: &'static str| {
-            move |value: Value| value.within(0.0..=1.0, &format!("{key} lies between 0 and 1"), Some(CUBICS))
+            move |value: Value| value.within(0.0..=1.0, &format!("{key} lies between 0 and 1"), Some(MITCHELL_HELP))
         };
         let [b, c] = ["b", "c"].map(|key| table.need(key, parameter(key)));
         Some(Filter::Mitchell(Mitchell { b: b?, c: c? }))
     })
 }
 
-const CUBICS: &str = "\"mitchell\" alone has b = 1/3 and c = 1/3; b = 0 and c = 0.5 give the Catmull-Rom spline";
+const MITCHELL_HELP: &str = "\"mitchell\" alone has b = 1/3 and c = 1/3; b = 0 and c = 0.5 give the Catmull-Rom spline";
 
 fn filter(value: Value) -> Option<Filter> {
     let named = Filter::PLAIN.map(|filter| (filter.name(), filter));
     match value.node() {
         DeValue::String(_) => return value.word(&named),
         DeValue::Table(_) => {}
-        _ => return value.wanted("a name in quotes or a table such as { gaussian = { sigma = 0.5 } }"),
+        _ => return value.expected("a name in quotes or a table such as { gaussian = { sigma = 0.5 } }"),
     }
     let kind = FILTER.kind(value)?;
     let plain = kind.key();

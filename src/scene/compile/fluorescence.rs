@@ -1,17 +1,17 @@
 //! Dyes in matte surfaces.
 
-use super::asked::{Asked, spectrum};
+use super::asked::{SpectrumDraft, spectrum};
 use crate::material::{Diffuse, Fluorescence};
-use crate::scene::text::{Fields, Value, shown};
+use crate::scene::text::{Fields, Value, six_digits};
 use crate::spectrum::Curve;
 
-pub(super) fn diffuse<'d>(fields: &mut Fields<'d>) -> Option<Diffuse<Asked<'d>>> {
+pub(super) fn diffuse<'d>(fields: &mut Fields<'d>) -> Option<Diffuse<SpectrumDraft<'d>>> {
     let reflectance = spectrum(fields, "reflectance");
     let fluorescence = fields.maybe("fluorescence", |dye| Fields::read(dye, fluorescence))?;
     Some(Diffuse { reflectance, fluorescence })
 }
 
-fn fluorescence<'d>(fields: &mut Fields<'d>) -> Option<Fluorescence<Asked<'d>>> {
+fn fluorescence<'d>(fields: &mut Fields<'d>) -> Option<Fluorescence<SpectrumDraft<'d>>> {
     let [absorption, emission] = ["absorption", "emission"].map(|key| spectrum(fields, key));
     let help = "photons emitted per photon absorbed: 0.9 for most highlighters";
     let share = |value: Value| value.within(0.0..=1.0, "a quantum yield lies between 0 and 1", Some(help));
@@ -20,29 +20,30 @@ fn fluorescence<'d>(fields: &mut Fields<'d>) -> Option<Fluorescence<Asked<'d>>> 
 }
 
 /// Returns where the absorption and the emission of a dye are written, if there is a dye.
-pub(super) fn written<'d>(diffuse: &Diffuse<Asked<'d>>) -> Option<[Value<'d>; 2]> {
+pub(super) fn dye_values<'d>(diffuse: &Diffuse<SpectrumDraft<'d>>) -> Option<[Value<'d>; 2]> {
     let dye = diffuse.fluorescence.as_ref()?;
     match [dye.absorption, dye.emission] {
-        [Asked::There(absorption), Asked::There(emission)] => Some([absorption, emission]),
+        [SpectrumDraft::Given(absorption), SpectrumDraft::Given(emission)] => Some([absorption, emission]),
         _ => None,
     }
 }
 
 /// Refuses a surface with a dye that returns more light than it receives.
-pub(super) fn conserves(diffuse: &Diffuse<Curve>, [absorption, emission]: [Value; 2]) -> Option<()> {
+pub(super) fn check_conservation(diffuse: &Diffuse<Curve>, [absorption, emission]: [Value; 2]) -> Option<()> {
     let Diffuse { reflectance, fluorescence: Some(dye) } = diffuse else { return Some(()) };
     let dye = dye.dye();
     if dye.quantum_yield > 0.0 && dye.power_per_nm() == 0.0 {
         return emission.refuse("the dye emits no light between 300 and 830 nm");
     }
-    let shades = reflectance.shades().into_iter().chain(reflectance.lightest());
-    let Some(excess) = shades.into_iter().find_map(|shade| dye.excess(&shade)) else { return Some(()) };
+    let shades = reflectance.representatives().into_iter().chain(reflectance.lightest());
+    let Some(excess) = shades.into_iter().find_map(|shade| dye.energy_excess(&shade)) else { return Some(()) };
     let nm = excess.nm;
-    if excess.taken > 1.0 {
-        let message = format!("reflectance and absorption add up to {} at {nm} nm", shown(excess.taken));
+    if excess.used_share > 1.0 {
+        let message = format!("reflectance and absorption add up to {} at {nm} nm", six_digits(excess.used_share));
         return absorption
             .advise(message, "they are shares of the same light: lower one of them until they add up to at most 1");
     }
-    let message = format!("at {nm} nm, more power would leave than arrives: {} times as much", shown(excess.given));
+    let message =
+        format!("at {nm} nm, more power would leave than arrives: {} times as much", six_digits(excess.returned_share));
     absorption.advise(message, "a dye emits at longer wavelengths than it absorbs: end `absorption` below them")
 }

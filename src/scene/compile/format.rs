@@ -2,14 +2,14 @@
 
 use toml::de::DeValue;
 
-use super::measures::unit_of_wavelength;
+use super::measures::wavelength_unit_hint;
 use crate::film::{Compression, FirstSurface, Format, Layer, Precision};
 use crate::scene::text::{Fields, Spanned, Value, above_0_to, at};
 use crate::spectrum::WavelengthBands;
 use crate::spectrum::visible::{FIRST_NM, LAST_NM};
 
 /// Largest luminance of white. That of the sun is 1.6e9.
-const MOST_LUMINOUS: f64 = 1e12;
+const MAX_WHITE_LUMINANCE: f64 = 1e12;
 
 /// Reads what the file contains.
 pub(super) fn format(film: &mut Fields) -> Option<Format> {
@@ -60,9 +60,9 @@ pub(super) fn format(film: &mut Fields) -> Option<Format> {
 fn white_luminance(film: &mut Fields) -> Option<Option<f64>> {
     let is_absolute = film.or("radiometry", false, |value| value.word(&[("absolute", true), ("relative", false)]));
     let help = "in cd/m2: the white of a screen is about 100";
-    let what = format!("a luminance of white is above 0 and at most {MOST_LUMINOUS:e}");
-    let white =
-        film.maybe("white_luminance", at(|value: Value| value.within(above_0_to(MOST_LUMINOUS), &what, Some(help))));
+    let rule = format!("a luminance of white is above 0 and at most {MAX_WHITE_LUMINANCE:e}");
+    let white = film
+        .maybe("white_luminance", at(|value: Value| value.within(above_0_to(MAX_WHITE_LUMINANCE), &rule, Some(help))));
     match (is_absolute?, white?) {
         (true, white) => Some(Some(white.map_or(1.0, |white| white.it))),
         (false, None) => Some(None),
@@ -80,26 +80,26 @@ fn spectral(value: Value) -> Option<Option<WavelengthBands>> {
         DeValue::Boolean(true) => return Some(Some(WavelengthBands::default())),
         DeValue::Boolean(false) => return Some(None),
         DeValue::Table(_) => {}
-        _ => return value.wanted("true, or a table such as { from = 380, to = 780, step = 5 }"),
+        _ => return value.expected("true, or a table such as { from = 380, to = 780, step = 5 }"),
     }
     let [from, to, step] = Fields::read(value, |bands| {
         let nm = |value: Value| {
-            let right = FIRST_NM..=LAST_NM;
-            let unit = unit_of_wavelength(value.number()?, right.clone());
-            value.within(right, "a band lies between 360 and 830 nm", unit.as_deref())
+            let visible_nm = FIRST_NM..=LAST_NM;
+            let unit = wavelength_unit_hint(value.number()?, visible_nm.clone());
+            value.within(visible_nm, "a band lies between 360 and 830 nm", unit.as_deref())
         };
         let most = above_0_to(LAST_NM - FIRST_NM);
         let width = |value: Value| value.within(most, "a step is a width above 0 and at most 470 nm", None);
         let [from, to, step] = [bands.or("from", 380.0, nm), bands.or("to", 780.0, nm), bands.or("step", 5.0, width)];
         Some([from?, to?, step?])
     })?;
-    let most = WavelengthBands::MOST;
+    let most = WavelengthBands::MAX_COUNT;
     match WavelengthBands::new(from, to, step) {
         Some(bands) => Some(Some(bands)),
         None if from > to => value.refuse(format!("the last band, at {to} nm, lies before the first, at {from} nm")),
         None => {
             let message = format!("a step of {step} nm gives more than the maximum of {most} bands");
-            value.tell(message, unit_of_wavelength(step, 1.0..=50.0))
+            value.report(message, wavelength_unit_hint(step, 1.0..=50.0))
         }
     }
 }
@@ -134,7 +134,7 @@ fn layers(value: Value) -> Option<Vec<Layer>> {
 }
 
 /// Whole frame rates that television runs at 1000 / 1001 of their speed, and gives with two or three digits.
-const OF_TELEVISION: [u32; 5] = [24, 30, 48, 60, 120];
+const TELEVISION_RATES: [u32; 5] = [24, 30, 48, 60, 120];
 
 /// Reads a frame rate, as a number of frames and the seconds that they take.
 fn rate(value: Value) -> Option<[u32; 2]> {
@@ -142,7 +142,7 @@ fn rate(value: Value) -> Option<[u32; 2]> {
     let rate =
         value.within(above_0_to(1000.0), "a rate is a number of frames per second, above 0 and at most 1000", help)?;
     let is_slowed = |whole: &u32| (rate - f64::from(*whole) / 1.001).abs() < 0.005;
-    Some(match OF_TELEVISION.into_iter().find(is_slowed) {
+    Some(match TELEVISION_RATES.into_iter().find(is_slowed) {
         Some(whole) => [1000 * whole, 1001],
         None if rate.fract() == 0.0 => [rate as u32, 1],
         None => [(1000.0 * rate).round().max(1.0) as u32, 1000],

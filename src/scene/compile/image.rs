@@ -5,16 +5,16 @@ use std::sync::Arc;
 
 use super::context::Context;
 use super::curve::curve;
-use super::curve_range::{MAX_EMISSION, is_factor, possible_thickness};
-use super::curve_text::{CurveText, KindText, is_repeat};
+use super::curve_range::{MAX_EMISSION, check_thickness, is_factor};
+use super::curve_text::{CurveText, KindText, check_repeat};
 use super::image_file::{ImageFile, read_texture};
 use super::image_numbers::Meaning;
-use super::radiometry::on_film;
+use super::radiometry::scale_to_film;
 use crate::scene::text::{Fault, FileKind, IMAGES, Spanned};
 use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, Quantity, Texture};
 
 const IMAGE: FileKind =
-    FileKind { nameless: "an image needs the name of its file", most_bytes: 1 << 32, endings: IMAGES };
+    FileKind { empty_name_message: "an image needs the name of its file", max_bytes: 1 << 32, endings: IMAGES };
 /// Images that may be brighter than white.
 pub(super) const BRIGHT_IMAGE: FileKind = FileKind { endings: &["exr", "hdr"], ..IMAGE };
 
@@ -46,23 +46,23 @@ fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, q
     let (scale, placement, image) = (factor?, placement?, image?);
     let ([x, y], brightest) = image.brightest();
     if quantity == Quantity::Thickness {
-        thickness_of(text, file, &image, scale)?;
+        check_thicknesses(text, file, &image, scale)?;
     } else if quantity != Quantity::Emission && f64::from(brightest) * scale > 1.0 {
         let scaled = if scale == 1.0 { String::new() } else { format!(" times its scale of {scale}") };
         let limit = if quantity == Quantity::Share { "a share is at most 1" } else { "no surface returns more than 1" };
         let message = format!("{file}: pixel ({x}, {y}) is {brightest}{scaled}, and {limit}");
         let help = format!("scale = {:.4} makes it 1", (1e4 / f64::from(brightest)).floor() / 1e4);
-        return text.place.tell(message, (brightest < 1e4).then_some(help));
+        return text.place.report(message, (brightest < 1e4).then_some(help));
     }
     let curve = Curve { kind: CurveKind::Texture(Texture { image, placement }), scale, luminance: None };
     match quantity {
-        Quantity::Emission => on_film(context, text, curve),
+        Quantity::Emission => scale_to_film(context, text, curve),
         _ => Some(curve),
     }
 }
 
 /// Checks that an image has a single number at each place, and that all numbers are possible thicknesses in nm.
-fn thickness_of(text: &CurveText, file: &str, image: &Image, scale: f64) -> Option<()> {
+fn check_thicknesses(text: &CurveText, file: &str, image: &Image, scale: f64) -> Option<()> {
     let [r, g, b] = image.most_colorful();
     if r != g || g != b {
         let help = "a thickness is a single number: save it in grayscale, or name its channel = \"red\"";
@@ -70,7 +70,7 @@ fn thickness_of(text: &CurveText, file: &str, image: &Image, scale: f64) -> Opti
     }
     let ([x, y], most) = image.brightest();
     let place = format!(" where pixel ({x}, {y}) of {file} is {most}");
-    text.scale.place.told(possible_thickness(f64::from(most) * scale, &place))
+    text.scale.place.reported(check_thickness(f64::from(most) * scale, &place))
 }
 
 /// Returns the factor on an image, if it is valid and no luminance is given in its place.
@@ -95,7 +95,7 @@ fn checker<'d>(
     if let Some(luminance) = text.luminance {
         return luminance.place.advise("a checker has no single luminance", "give its squares a `scale`");
     }
-    let repeat = is_repeat(text.repeat);
+    let repeat = check_repeat(text.repeat);
     let [first, second] = cells.each_ref().map(|cell| {
         let scale = Spanned { it: cell.scale.it * text.scale.it, ..cell.scale };
         square(context, &CurveText { scale, ..cell.clone() }, quantity)
@@ -132,8 +132,8 @@ pub(super) fn read_file(
 ) -> Option<Arc<Image>> {
     let Spanned { place, it: file } = *file;
     let bytes = place.file(file, kind)?;
-    let ImageFile { image, warnings } = place.told(read(Path::new(file), &bytes))?;
-    context.has_read(place.path(file), &bytes);
+    let ImageFile { image, warnings } = place.reported(read(Path::new(file), &bytes))?;
+    context.record_file(place.path(file), &bytes);
     warnings.into_iter().for_each(|warning| context.warn_at(place, warning));
     Some(Arc::new(image))
 }

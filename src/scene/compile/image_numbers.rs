@@ -6,7 +6,7 @@ use crate::scene::text::Fault;
 use crate::spectrum::{Encoding, Matrix, apply, decode_srgb};
 
 /// Largest rounding error of a 16-bit float, relative to its value.
-const HALF: f64 = 1.0 / 2048.0;
+const HALF_ROUNDING: f64 = 1.0 / 2048.0;
 
 /// What the numbers of an image stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -76,7 +76,7 @@ impl Texels<'_> {
     /// behind.
     fn noise(&self) -> f32 {
         let sum: f64 = self.numbers.iter().filter(|x| **x > 0.0).map(|x| f64::from(*x)).sum();
-        (HALF * sum / self.numbers.len() as f64) as f32
+        (HALF_ROUNDING * sum / self.numbers.len() as f64) as f32
     }
 
     /// Decodes sRGB numbers to linear ones.
@@ -89,7 +89,7 @@ impl Texels<'_> {
     /// Negative results become 0. They count as rounding errors, without a warning, if the rounding to halves in the
     /// file could have caused them.
     pub(super) fn convert(&mut self, to_rec709: &Matrix) -> Option<String> {
-        let rounding = to_rec709.map(|row| row.map(|x| HALF * x.abs()));
+        let rounding = to_rec709.map(|row| row.map(|x| HALF_ROUNDING * x.abs()));
         let (mut first, mut count) = (0, 0);
         for (at, texel) in self.numbers.as_chunks_mut().0.iter_mut().enumerate() {
             let color = texel.map(f64::from);
@@ -107,7 +107,7 @@ impl Texels<'_> {
             2 => ", as does 1 other".to_owned(),
             _ => format!(", as do {} others", count - 1),
         };
-        let told = format!("{}: pixel ({x}, {y}) lies outside Rec.709{others}", self.path.display());
-        Some(format!("{told}: negative values there count as 0"))
+        let warning = format!("{}: pixel ({x}, {y}) lies outside Rec.709{others}", self.path.display());
+        Some(format!("{warning}: negative values there count as 0"))
     }
 }

@@ -7,10 +7,10 @@ use super::curve::curve;
 use super::curve_text::{CurveText, KindText};
 use super::image::{BRIGHT_IMAGE, factor_on_image, read_file};
 use super::image_file::read_image;
-use super::measures::{direction, narrow, point};
+use super::measures::{direction, point, radians_hint};
 use super::object;
 use super::radiometry;
-use super::transform::{Step, map_of, steps};
+use super::transform::{Step, compose_steps, steps};
 use crate::light::{Environment, Light, Panorama, Point, Sky, SkyPolarization, Spot, Sun};
 use crate::math::{DMat3, DVec3, Transform};
 use crate::scene::Scene;
@@ -18,7 +18,7 @@ use crate::scene::text::{Fields, Spanned, Value, above_0_to, at};
 use crate::spectrum::{Curve, Placement, Quantity};
 
 /// A light of a scene.
-pub(super) struct Entry {
+pub(super) struct LightEntry {
     light: Light<Curve>,
     group: String,
     /// Whether the camera sees it, if it is infinite.
@@ -29,11 +29,11 @@ pub(super) struct Entry {
 /// [[light]]
 /// environment = { radiance = 1 }     # or `point`, `spot` or `sun`
 /// ```
-pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment: &mut bool) -> Option<Entry> {
+pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment: &mut bool) -> Option<LightEntry> {
     Fields::read(value, |entry| {
         let name = entry.maybe("name", object::name);
         let own = entry.maybe("group", object::group);
-        let seen = entry.maybe("visible_to_camera", at(Value::yes_or_no));
+        let visible = entry.maybe("visible_to_camera", at(Value::yes_or_no));
         let kinds = ["environment", "point", "spot", "sun"].map(|kind| entry.get(kind));
         let given: Vec<Value> = kinds.into_iter().flatten().collect();
         let place = match given.as_slice() {
@@ -48,10 +48,10 @@ pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment
                 return last.advise("a light has exactly one kind", "start another [[light]] for the second");
             }
         };
-        let (group, seen) = (own?.or(name?), seen?);
-        if let Some(seen) = seen.filter(|_| matches!(place.key(), "point" | "spot")) {
+        let (group, visible) = (own?.or(name?), visible?);
+        if let Some(visible) = visible.filter(|_| matches!(place.key(), "point" | "spot")) {
             let message = "point lights and spotlights are too small to be seen";
-            return seen.place.advise(message, "leave `visible_to_camera` out");
+            return visible.place.advise(message, "leave `visible_to_camera` out");
         }
         let light = match place.key() {
             "point" => point_light(context, place),
@@ -59,21 +59,21 @@ pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment
             "sun" => sun_light(context, place),
             _ => {
                 let help = "environment = { radiance = .., transform = [..] }".into();
-                entry.stray("transform", "`transform` goes inside `environment`, beside `radiance`", help);
+                entry.refuse_misplaced("transform", "`transform` goes inside `environment`, beside `radiance`", help);
                 if std::mem::replace(has_environment, true) {
                     return place.refuse("a scene has at most one environment");
                 }
-                even_or_image(context, place).map(Light::Environment)
+                environment_light(context, place).map(Light::Environment)
             }
         }?;
         let group = group.unwrap_or(light.kind_name()).to_owned();
-        Some(Entry { light, group, is_visible: seen.is_none_or(|seen| seen.it) })
+        Some(LightEntry { light, group, is_visible: visible.is_none_or(|visible| visible.it) })
     })
 }
 
 /// Appends lights to those of a scene.
-pub(super) fn add_lights(scene: &mut Scene<Curve>, entries: Vec<Entry>) {
-    for Entry { light, group, is_visible } in entries {
+pub(super) fn add_lights(scene: &mut Scene<Curve>, entries: Vec<LightEntry>) {
+    for LightEntry { light, group, is_visible } in entries {
         let id = scene.lights.len();
         scene.infinite_lights.extend(light.is_infinite().then_some(id));
         scene.hidden_lights.extend((!is_visible).then_some(id));
@@ -97,22 +97,22 @@ fn point_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curv
     Fields::read(value, |light| {
         let position = light.need("position", point);
         let intensity = light.need("intensity", |value| intensity(context, value));
-        of_the_entry(light, "point", &OF_A_POINT);
+        refuse_entry_keys(light, "point", &POINT_LIGHT_KEYS);
         Some(Light::Point(Point { position: position?.to_array(), intensity: intensity? }))
     })
 }
 
 /// Keys that belong beside the kind of a light that is too small to be seen.
-const OF_A_POINT: [&str; 2] = ["name", "group"];
+const POINT_LIGHT_KEYS: [&str; 2] = ["name", "group"];
 /// Keys that belong beside the kind of a light that can be seen.
-const OF_AN_INFINITE_LIGHT: [&str; 3] = ["name", "group", "visible_to_camera"];
+const INFINITE_LIGHT_KEYS: [&str; 3] = ["name", "group", "visible_to_camera"];
 /// Names of `visible_to_camera` in other programs.
-const OF_SIGHT: [&str; 2] = ["visible", "camera_visible"];
+const VISIBILITY_ALIASES: [&str; 2] = ["visible", "camera_visible"];
 
 /// Reports keys that stand within the kind of a light but belong beside it.
-fn of_the_entry(light: &mut Fields, kind: &str, keys: &[&'static str]) {
+fn refuse_entry_keys(light: &mut Fields, kind: &str, keys: &[&'static str]) {
     for &key in keys {
-        light.stray(
+        light.refuse_misplaced(
             key,
             format!("`{key}` is a key of the light"),
             format!("write it beside `{kind}`, in its [[light]]"),
@@ -121,16 +121,16 @@ fn of_the_entry(light: &mut Fields, kind: &str, keys: &[&'static str]) {
 }
 
 /// Reports keys that stand within an infinite light but belong beside it.
-fn of_an_infinite_light(light: &mut Fields, kind: &str) {
-    of_the_entry(light, kind, &OF_AN_INFINITE_LIGHT);
-    for key in OF_SIGHT {
+fn refuse_infinite_light_keys(light: &mut Fields, kind: &str) {
+    refuse_entry_keys(light, kind, &INFINITE_LIGHT_KEYS);
+    for key in VISIBILITY_ALIASES {
         let help = format!("write `visible_to_camera` beside `{kind}`, in its [[light]]");
-        light.stray(key, format!("unknown key `{key}`"), help);
+        light.refuse_misplaced(key, format!("unknown key `{key}`"), help);
     }
 }
 
 /// The apparent diameter of the sun in radians, approximately.
-const IN_RADIANS: RangeInclusive<f64> = 0.009..=0.0096;
+const SUN_RADIANS: RangeInclusive<f64> = 0.009..=0.0096;
 
 fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>> {
     Fields::read(value, |light| {
@@ -138,7 +138,7 @@ fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>
         // The apparent diameter of the sun.
         let angular_diameter = light.or("angular_diameter", 0.533, |value| {
             let across = value.within(0.0..=180.0, "a sun is 0 to 180 degrees across", None)?;
-            if IN_RADIANS.contains(&across) {
+            if SUN_RADIANS.contains(&across) {
                 let meant = across.to_degrees();
                 let warning = format!(
                     "a sun of {across} degrees is hardly wider than a point; if radians are meant, write {meant:.3}"
@@ -149,8 +149,8 @@ fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>
         });
         let irradiance = light.need("irradiance", |value| emission(context, value));
         let help = "toward = [1, 2, 1] is the direction from the scene to the sun";
-        light.stray("look_at", "a sun is infinitely far away and looks at no point", help.into());
-        of_an_infinite_light(light, "sun");
+        light.refuse_misplaced("look_at", "a sun is infinitely far away and looks at no point", help.into());
+        refuse_infinite_light_keys(light, "sun");
         Some(Light::Sun(Sun::new(toward?.to_array(), angular_diameter?, irradiance?)))
     })
 }
@@ -163,7 +163,7 @@ fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve
         let cone_angle = light.need("cone_angle", |value| {
             let cone_angle =
                 value.within(above_0_to(180.0), "a cone angle is above 0 and at most 180 degrees", None)?;
-            if let Some(radians) = narrow(cone_angle) {
+            if let Some(radians) = radians_hint(cone_angle) {
                 context.warn_at(value, format!("a cone of {cone_angle} degrees lights very little{radians}"));
             }
             Some(cone_angle)
@@ -171,7 +171,7 @@ fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve
         let blend =
             light.or("blend", 0.15, |value| value.within(0.0..=1.0, "blend is a fraction of the cone, 0 to 1", None));
         let intensity = light.need("intensity", |value| intensity(context, value));
-        of_the_entry(light, "spot", &OF_A_POINT);
+        refuse_entry_keys(light, "spot", &POINT_LIGHT_KEYS);
         let position = position?;
         let toward = match (toward?, target?) {
             (Some(toward), None) => toward.it,
@@ -200,12 +200,12 @@ fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve
 /// [[light]]
 /// environment = { radiance = { image = "sky.exr" }, transform = [{ rotate = { axis = [0, 1, 0], degrees = 90 } }] }
 /// ```
-fn even_or_image<'d>(context: &mut Context, value: Value<'d>) -> Option<Environment<Curve>> {
+fn environment_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Environment<Curve>> {
     Fields::read(value, |light| {
         let radiance = light.need("radiance", |value| CurveText::read(value, Quantity::Emission));
         let turn = light.maybe("transform", at(steps));
         let polarization = light.maybe("polarization", sky_polarization);
-        of_an_infinite_light(light, "environment");
+        refuse_infinite_light_keys(light, "environment");
         let (radiance, polarization) = (radiance?, polarization?);
         let KindText::Image(file) = radiance.kind else {
             if let Some(turn) = turn?.filter(|turn| !turn.it.is_empty()) {
@@ -223,7 +223,8 @@ fn even_or_image<'d>(context: &mut Context, value: Value<'d>) -> Option<Environm
         let factor = factor_on_image(&radiance);
         let turn = turn.and_then(|turn| turn.map_or(Some(Transform::IDENTITY), |turn| rotation(&turn.it)));
         let panorama = panorama(context, &Spanned { place: radiance.place, it: file });
-        let (factor, turn, panorama) = (radiometry::on_film(context, &radiance, factor?.into())?, turn?, panorama?);
+        let (factor, turn, panorama) =
+            (radiometry::scale_to_film(context, &radiance, factor?.into())?, turn?, panorama?);
         let rotation = DMat3::from_cols(turn.vector(DVec3::X), turn.vector(DVec3::Y), turn.vector(DVec3::Z));
         Some(Environment { radiance: factor, image: Some(Sky::new(panorama, rotation)), polarization })
     })
@@ -249,7 +250,7 @@ fn rotation(steps: &[Spanned<Step>]) -> Option<Transform> {
             let message = "an environment has no position and no size: it can only be rotated";
             step.place.advise(message, "write { rotate = { axis = [0, 1, 0], degrees = 90 } }")
         }
-        None => map_of(steps, Transform::IDENTITY),
+        None => compose_steps(steps, Transform::IDENTITY),
     }
 }
 

@@ -5,17 +5,17 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use super::context::Context;
-use super::measures::{COORDINATE, MAX_LENGTH, direction, far, is_near, near, point};
-use super::written::Written;
+use super::measures::{COORDINATE, MAX_LENGTH, direction, in_range, is_coordinate, point, range_error};
+use super::written::ShapeText;
 use crate::math::DVec3;
 use crate::scene::text::{Fields, Numbers, Rows, Spanned, Value, at};
 use crate::shape::{Attributes, Faces, Mesh, Shape, Vertices, read_mesh, vertex_normals};
 
 /// Extensions of mesh files.
-const MESHES: [&str; 4] = ["ply", "obj", "gltf", "glb"];
+const MESH_EXTENSIONS: [&str; 4] = ["ply", "obj", "gltf", "glb"];
 
 /// The data of a mesh.
-struct Parts {
+struct MeshData {
     vertices: Vertices,
     faces: Vec<[u32; 3]>,
     attributes: Attributes,
@@ -25,7 +25,7 @@ struct Parts {
 type Face = SmallVec<[u32; 4]>;
 
 /// The data of a mesh that the scene file itself contains.
-struct Inline<'d> {
+struct InlineMesh<'d> {
     points: Option<Spanned<'d, Vec<DVec3>>>,
     faces: Option<Spanned<'d, Vec<Face>>>,
     normals: Option<Spanned<'d, Vec<DVec3>>>,
@@ -33,7 +33,7 @@ struct Inline<'d> {
 }
 
 /// Reads `mesh = { file = "cup.ply", smooth = true }`, or `points`, `faces`, `normals` and `uv` in place of the file.
-pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> Option<Written<'d>> {
+pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> Option<ShapeText<'d>> {
     Fields::read(value, |mesh| {
         let file = mesh.maybe("file", at(Value::text));
         let points = mesh.maybe("points", at(points));
@@ -41,27 +41,27 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         let normals = mesh.maybe("normals", at(normals));
         let uv = mesh.maybe("uv", at(coordinates));
         let smooth = mesh.maybe("smooth", Value::yes_or_no);
-        let is_vague = mesh.has_unknown();
+        let has_unknown_keys = mesh.has_unknown();
         let (file, smooth) = (file?, smooth?);
-        let inline = Inline { points: points?, faces: faces?, normals: normals?, uv: uv? };
+        let inline = InlineMesh { points: points?, faces: faces?, normals: normals?, uv: uv? };
         // Normals that the scene file contains are used, unless it says that the mesh is not smooth.
         let (flat, smooth) = (smooth == Some(false), smooth.unwrap_or(false));
-        let written = |mesh: &Arc<Mesh>, file| Written { shape: Shape::Mesh(mesh.clone()), file };
-        let mut parts = match (&file, &inline) {
-            (Some(file), Inline { points: None, faces: None, normals: None, uv: None }) => {
+        let written = |mesh: &Arc<Mesh>, file| ShapeText { shape: Shape::Mesh(mesh.clone()), file };
+        let mut data = match (&file, &inline) {
+            (Some(file), InlineMesh { points: None, faces: None, normals: None, uv: None }) => {
                 if let Some(mesh) = context.meshes.get(&(file.place.path(file.it), smooth)) {
                     return Some(written(mesh, Some(file.it)));
                 }
                 read_file(context, name, file, smooth)?
             }
-            (None, Inline { points: Some(_), faces: Some(_), .. }) => inline.parts()?,
-            _ if is_vague => return None,
+            (None, InlineMesh { points: Some(_), faces: Some(_), .. }) => inline.data()?,
+            _ if has_unknown_keys => return None,
             _ => return value.refuse("a mesh has either a `file`, or `points` and `faces`"),
         };
         if flat {
-            parts.attributes.normals.clear();
+            data.attributes.normals.clear();
         }
-        let mesh = built(context, name, value, parts, smooth)?;
+        let mesh = build_mesh(context, name, value, data, smooth)?;
         let written = written(&mesh, file.map(|file| file.it));
         if let Some(Spanned { place, it: file }) = file {
             context.meshes.insert((place.path(file), smooth), mesh);
@@ -72,7 +72,7 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
 
 fn points(value: Value) -> Option<Vec<DVec3>> {
     match value.rows() {
-        Some(rows) => Some(real(value, rows)?.into_iter().map(DVec3::from_array).collect()),
+        Some(rows) => Some(coordinate_rows(value, rows)?.into_iter().map(DVec3::from_array).collect()),
         None => value.list(|entry| point(entry.as_list("a point", ""))),
     }
 }
@@ -89,7 +89,7 @@ fn faces(value: Value) -> Option<Vec<Face>> {
 
 fn normals(value: Value) -> Option<Vec<DVec3>> {
     let Some(rows) = value.rows() else { return value.list(|entry| direction(entry.as_list("a normal", ""))) };
-    let normals: Vec<DVec3> = real(value, rows)?.into_iter().map(DVec3::from_array).collect();
+    let normals: Vec<DVec3> = coordinate_rows(value, rows)?.into_iter().map(DVec3::from_array).collect();
     match normals.iter().position(|normal| normal.try_normalize().is_none()) {
         Some(row) => value.refuse(format!("row {row}: a direction needs a length above 0")),
         None => Some(normals),
@@ -98,19 +98,19 @@ fn normals(value: Value) -> Option<Vec<DVec3>> {
 
 fn coordinates(value: Value) -> Option<Vec<[f64; 2]>> {
     match value.rows() {
-        Some(rows) => real(value, rows),
-        None => value.list(|entry| near(entry, COORDINATE, entry.numbers()?)),
+        Some(rows) => coordinate_rows(value, rows),
+        None => value.list(|entry| in_range(entry, COORDINATE, entry.numbers()?)),
     }
 }
 
 /// Reads rows of coordinates.
-fn real<const N: usize>(value: Value, rows: &Rows) -> Option<Vec<[f64; N]>> {
+fn coordinate_rows<const N: usize>(value: Value, rows: &Rows) -> Option<Vec<[f64; N]>> {
     let numbers = match &rows.numbers {
         Numbers::Real(numbers) if rows.width == N => numbers,
         _ => return value.refuse(format!("`{}` has rows of {N} numbers, not {}", value.key(), rows.width)),
     };
-    match numbers.iter().position(|number| !is_near(*number)) {
-        Some(first) => value.refuse(format!("row {}: {}", first / N, far(COORDINATE, numbers[first]))),
+    match numbers.iter().position(|number| !is_coordinate(*number)) {
+        Some(first) => value.refuse(format!("row {}: {}", first / N, range_error(COORDINATE, numbers[first]))),
         None => Some(numbers.as_chunks().0.to_vec()),
     }
 }
@@ -123,8 +123,8 @@ fn face(value: Value) -> Option<Face> {
     }
 }
 
-fn built(context: &mut Context, name: &str, value: Value, parts: Parts, smooth: bool) -> Option<Arc<Mesh>> {
-    let Parts { vertices, faces, mut attributes } = parts;
+fn build_mesh(context: &mut Context, name: &str, value: Value, data: MeshData, smooth: bool) -> Option<Arc<Mesh>> {
+    let MeshData { vertices, faces, mut attributes } = data;
     let is_averaged = smooth && attributes.normals.is_empty();
     if is_averaged {
         attributes.normals = vertex_normals(&vertices, &faces);
@@ -139,20 +139,20 @@ fn built(context: &mut Context, name: &str, value: Value, parts: Parts, smooth: 
     }
     let mesh = Arc::new(mesh.with(attributes));
     if is_averaged {
-        context.averaged.insert(Arc::as_ptr(&mesh));
+        context.averaged_meshes.insert(Arc::as_ptr(&mesh));
     }
     Some(mesh)
 }
 
-impl Inline<'_> {
-    fn parts(self) -> Option<Parts> {
+impl InlineMesh<'_> {
+    fn data(self) -> Option<MeshData> {
         let (points, faces) = (self.points?, self.faces?);
         let count = points.it.len();
-        let mut right = true;
+        let mut is_valid = true;
         for (number, face) in faces.it.iter().enumerate() {
             if let Some(corner) = face.iter().position(|&corner| corner as usize >= count) {
                 let message = format!("there is no point {}: the {count} points are numbered from 0", face[corner]);
-                right = false;
+                is_valid = false;
                 if faces.place.rows().is_some() {
                     faces.place.refuse::<()>(format!("row {number}: {message}"));
                     break;
@@ -174,27 +174,27 @@ impl Inline<'_> {
             fits(uv.place, "entries of `uv`", uv.it.len())?;
             attributes.coordinates = uv.it.into_iter().map(|pair| pair.map(|x| x as f32)).collect();
         }
-        if !right {
+        if !is_valid {
             return None;
         }
         let vertices = Vertices::Double(points.it);
         let mut cut = Faces::default();
         faces.it.iter().for_each(|face| cut.push(face));
         match cut.triangles(&vertices) {
-            Ok(faces) => Some(Parts { vertices, faces, attributes }),
+            Ok(faces) => Some(MeshData { vertices, faces, attributes }),
             Err(message) => faces.place.refuse(message),
         }
     }
 }
 
-fn read_file(context: &mut Context, name: &str, file: &Spanned<&str>, smooth: bool) -> Option<Parts> {
+fn read_file(context: &mut Context, name: &str, file: &Spanned<&str>, smooth: bool) -> Option<MeshData> {
     let Spanned { place, it: file } = *file;
     let path = place.path(file);
     let mesh = match read_mesh(&path, smooth) {
         Ok(mesh) => mesh,
         Err(_) if file.is_empty() => return place.refuse("a mesh file needs a name"),
         Err(_) if path.is_dir() => return place.refuse(format!("{file} is a folder")),
-        Err(_) if path.try_exists().is_ok_and(|exists| !exists) => return place.missing(file, &MESHES),
+        Err(_) if path.try_exists().is_ok_and(|exists| !exists) => return place.missing(file, &MESH_EXTENSIONS),
         Err(message) => return place.refuse(format!("{file}: {message}")),
     };
     let is_far = |&vertex: &u32| mesh.vertices.at(vertex).abs().max_element() > MAX_LENGTH;
@@ -202,12 +202,12 @@ fn read_file(context: &mut Context, name: &str, file: &Spanned<&str>, smooth: bo
         return place.refuse(format!("{file}: vertex {vertex} (counted from 0) is beyond {MAX_LENGTH:e}"));
     }
     match std::fs::read(&path) {
-        Ok(bytes) => context.has_read(path, &bytes),
+        Ok(bytes) => context.record_file(path, &bytes),
         Err(error) => return place.refuse(format!("cannot read {file}: {error}")),
     }
     for other in mesh.others {
         match std::fs::read(&other) {
-            Ok(bytes) => context.has_read(other, &bytes),
+            Ok(bytes) => context.record_file(other, &bytes),
             Err(error) => return place.refuse(format!("{}: {error}", other.display())),
         }
     }
@@ -222,5 +222,5 @@ fn read_file(context: &mut Context, name: &str, file: &Spanned<&str>, smooth: bo
              different as separate files"
         )),
     }
-    Some(Parts { vertices: mesh.vertices, faces: mesh.faces, attributes: mesh.attributes })
+    Some(MeshData { vertices: mesh.vertices, faces: mesh.faces, attributes: mesh.attributes })
 }

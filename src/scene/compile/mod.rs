@@ -41,10 +41,10 @@ use sha2::Digest;
 use toml::de::DeValue;
 
 use self::context::Context;
-use self::material::Drafts;
+use self::material::MaterialDrafts;
 use self::object::{Names, ObjectDraft};
-use self::place::Placed;
-use self::shining::surfaces_that_shine;
+use self::place::PlacedObjects;
+use self::shining::add_area_lights;
 use super::checks::check;
 use super::index::Index;
 use super::text::{Document, Fields, INCLUDE, SET, Value};
@@ -60,7 +60,7 @@ pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
     let mut context = Context::new(&document.texts.whole);
     document.texts.rows.iter().for_each(|rows| rows.digest(|bytes| context.hash.update(bytes)));
     let scene = Fields::of_document(document, |sections| scene(&mut context, sections));
-    if document.told() > 0 {
+    if document.reported() > 0 {
         return None;
     }
     let mut scene = scene?;
@@ -76,7 +76,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     let [camera, film, render, materials, objects, lights] = SECTIONS.map(|key| sections.get(key));
     // Their values have already been put in their places.
     let _ = [SET, INCLUDE].map(|key| sections.get(key));
-    needs_camera_and_film(sections);
+    check_required_sections(sections);
     let (film, format) = film.and_then(section).and_then(film::film).unzip();
     context.white_luminance = format.as_ref().and_then(|format| format.white_luminance);
     let camera = camera.and_then(section).and_then(|camera| camera::camera(context, camera, film.as_ref()));
@@ -88,28 +88,28 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     context.few_bounces = bounces.is_some_and(|bounces| bounces <= 1);
     let drafts = materials.map(|materials| material::drafts(context, materials));
     // The names in a section that is misspelled are not known.
-    let nameless = sections.is_misspelt("material");
-    let drafts = drafts.unwrap_or_else(|| Drafts { by_name: BTreeMap::new(), nameless });
-    let materials = parts::with_parts(&drafts);
-    let mut names = Names { materials: &materials, nameless: drafts.nameless, unknown: BTreeSet::new() };
+    let has_unnamed = sections.is_misspelled("material");
+    let drafts = drafts.unwrap_or_else(|| MaterialDrafts { by_name: BTreeMap::new(), has_unnamed });
+    let materials = parts::resolve_parts(&drafts);
+    let mut names = Names { materials: &materials, has_unnamed: drafts.has_unnamed, unknown: BTreeSet::new() };
     let objects = objects.map(|objects| {
         let mut numbers = 0..;
         entries(objects, |entry| object::object(context, &mut names, entry, numbers.next().unwrap_or_default()))
     });
     context.meshes.clear();
     let objects = objects.unwrap_or_default();
-    namesakes(context, &objects);
+    warn_about_namesakes(context, &objects);
     let placed = place::placed(objects, &materials);
-    unused(context, &placed, &drafts);
+    warn_about_unused(context, &placed, &drafts);
     contact::contacts(context, &placed);
-    let of_bodies = [inside_out::inside_out(&placed), swallowed::swallowed(&placed)];
-    of_bodies.into_iter().flatten().for_each(|warning| context.warn(warning));
+    let body_warnings = [inside_out::inside_out(&placed), swallowed::swallowed(&placed)];
+    body_warnings.into_iter().flatten().for_each(|warning| context.warn(warning));
     let mut has_environment = false;
     let lights = lights.map(|lights| entries(lights, |light| light::light(context, light, &mut has_environment)));
-    let Placed { objects, materials, .. } = placed;
+    let PlacedObjects { objects, materials, .. } = placed;
     let index = Index::new(objects.iter().map(|object| &*object.shape));
     let (camera, film, format, render) = (camera?, film?, format?, render?);
-    can_have_stokes(sections, &format, &render).and(can_fluoresce(sections, &materials, &render))?;
+    check_stokes(sections, &format, &render).and(check_fluorescence(sections, &materials, &render))?;
     let mut scene = Scene {
         camera,
         film,
@@ -125,18 +125,18 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
         hash: String::new(),
         files: Vec::new(),
         settings: Vec::new(),
-        is_dark_told: false,
+        has_dark_warning: false,
         index: index.into(),
     };
-    surfaces_that_shine(&mut scene);
+    add_area_lights(&mut scene);
     light::add_lights(&mut scene, lights.unwrap_or_default());
     Some(scene)
 }
 
 /// Reports required sections that are missing, unless they are misspelled.
-fn needs_camera_and_film(sections: &mut Fields) {
+fn check_required_sections(sections: &mut Fields) {
     let needed = ["camera", "film"].into_iter();
-    let missing = needed.filter(|key| sections.get(key).is_none() && !sections.is_misspelt(key));
+    let missing = needed.filter(|key| sections.get(key).is_none() && !sections.is_misspelled(key));
     let missing: Vec<String> = missing.map(|key| format!("no [{key}]")).collect();
     if !missing.is_empty() {
         let message = format!("the scene has {}", missing.join(" and "));
@@ -145,7 +145,7 @@ fn needs_camera_and_film(sections: &mut Fields) {
 }
 
 /// Refuses Stokes vectors without polarization.
-fn can_have_stokes(sections: &Fields, format: &Format, render: &RenderText) -> Option<()> {
+fn check_stokes(sections: &Fields, format: &Format, render: &RenderText) -> Option<()> {
     if !format.has_stokes() || render.polarization != PolarizationText::Off {
         return Some(());
     }
@@ -154,7 +154,7 @@ fn can_have_stokes(sections: &Fields, format: &Format, render: &RenderText) -> O
 }
 
 /// Refuses dyes with the model of three bands, which has no wavelengths that a dye could absorb.
-fn can_fluoresce(sections: &Fields, materials: &[NamedMaterial<Curve>], render: &RenderText) -> Option<()> {
+fn check_fluorescence(sections: &Fields, materials: &[NamedMaterial<Curve>], render: &RenderText) -> Option<()> {
     let dyed = materials.iter().find(|named| !named.material.dyes().is_empty());
     let Some(NamedMaterial { name, .. }) = dyed.filter(|_| render.model == ModelText::Rgb) else { return Some(()) };
     let message = format!("material {name} fluoresces, but the model \"rgb\" has no wavelengths for it");
@@ -184,7 +184,7 @@ fn entries<'d, T>(value: Value<'d>, mut read: impl FnMut(Value<'d>) -> Option<T>
 }
 
 /// Warns about objects of the same name.
-fn namesakes(context: &mut Context, objects: &[ObjectDraft]) {
+fn warn_about_namesakes(context: &mut Context, objects: &[ObjectDraft]) {
     let mut counts = BTreeMap::<&str, usize>::new();
     objects.iter().for_each(|object| *counts.entry(&object.name).or_default() += 1);
     for (name, count) in counts.into_iter().filter(|&(_, count)| count > 1) {
@@ -194,7 +194,7 @@ fn namesakes(context: &mut Context, objects: &[ObjectDraft]) {
 }
 
 /// Warns about materials that no object uses.
-fn unused(context: &mut Context, placed: &Placed, drafts: &Drafts) {
+fn warn_about_unused(context: &mut Context, placed: &PlacedObjects, drafts: &MaterialDrafts) {
     // Scenes may have many materials, so most are looked up by name rather than compared with each one.
     let used: BTreeSet<&str> = placed.materials.iter().map(|used| used.name.as_str()).collect();
     for name in drafts.by_name.keys().filter(|name| !used.contains(*name)) {

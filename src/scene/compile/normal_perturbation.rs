@@ -16,7 +16,7 @@ use crate::shape::Coordinates;
 use crate::spectrum::{Encoding, Placement, TexelFilter, Texture, Wrap};
 
 /// Largest factor on the slopes of a normal map.
-const MOST_STRENGTH: f64 = 1e3;
+const MAX_STRENGTH: f64 = 1e3;
 
 /// The image that perturbs the normals of an object, before it is known where the image lies.
 pub(super) struct ReliefText<'d> {
@@ -46,8 +46,8 @@ fn normal_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<
         let file = map.need("image", at(Value::text));
         let placement = placement(map, "directions");
         let strength = map.or("strength", 1.0, |value| {
-            let what = format!("the strength of a normal map lies between 0 and {MOST_STRENGTH}");
-            value.within(0.0..=MOST_STRENGTH, &what, None)
+            let what = format!("the strength of a normal map lies between 0 and {MAX_STRENGTH}");
+            value.within(0.0..=MAX_STRENGTH, &what, None)
         });
         let file = file?;
         let image = image(context, &file, Meaning::Directions, None)?;
@@ -101,7 +101,7 @@ fn placement(map: &mut Fields, what: &str) -> Option<Placement> {
 
 impl ReliefText<'_> {
     /// Puts the image on an object, if the object has texture coordinates.
-    pub(super) fn on(&self, coordinates: Option<&Arc<Coordinates>>) -> Option<Arc<NormalPerturbation>> {
+    pub(super) fn apply_to(&self, coordinates: Option<&Arc<Coordinates>>) -> Option<Arc<NormalPerturbation>> {
         let Some(coordinates) = coordinates.cloned() else {
             let message = "this mesh has no texture coordinates, which the image needs";
             let help = format!("leave `{}` out, or give the mesh texture coordinates (`uv`)", self.place.key());

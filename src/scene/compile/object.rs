@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::context::Context;
 use super::normal_perturbation::{ReliefText, relief};
-use super::parts::{Materials, defined, unknown_material};
+use super::parts::{Materials, list_materials, unknown_material};
 use super::shape::SHAPE;
-use super::transform::{map_of, steps};
-use super::written::Written;
+use super::transform::{compose_steps, steps};
+use super::written::ShapeText;
 use crate::material::Material;
 use crate::math::Transform;
 use crate::scene::Visibility;
@@ -30,7 +30,7 @@ pub(super) struct ObjectDraft<'d> {
     /// Its name, or `object N` counted from 1.
     pub(super) name: String,
     pub(super) material: &'d str,
-    pub(super) shape: Spanned<'d, Written<'d>>,
+    pub(super) shape: Spanned<'d, ShapeText<'d>>,
     /// The transform of the shape, and its place in the text.
     pub(super) map: Spanned<'d, Transform>,
     /// The transforms of the instances of the shape, `map` included; one shape if absent.
@@ -45,7 +45,7 @@ pub(super) struct ObjectDraft<'d> {
 pub(super) struct Names<'m, 'd> {
     pub(super) materials: &'m Materials<'d>,
     /// Whether there are materials whose names are not known.
-    pub(super) nameless: bool,
+    pub(super) has_unnamed: bool,
     /// Names of materials that do not exist. Each is reported where it is first used.
     pub(super) unknown: BTreeSet<&'d str>,
 }
@@ -60,48 +60,48 @@ pub(super) fn object<'d>(
     Fields::read(entry, |object| {
         let name = object.maybe("name", name);
         let shape = object.need("shape", Some);
-        let is_within = shape.is_some_and(|shape| shape.node().get("material").is_some());
+        let is_material_inside = shape.is_some_and(|shape| shape.node().get("material").is_some());
         let named = match object.get("material") {
             Some(value) => at(|value: Value<'d>| names.find(value))(value),
-            None if is_within => None,
-            None if entry.is_one_of_many() => object.lack("material", None),
-            None => object.lack("material", names.help(name.flatten()).as_deref()),
+            None if is_material_inside => None,
+            None if entry.has_many_mistakes() => object.report_missing("material", None),
+            None => object.report_missing("material", names.help(name.flatten()).as_deref()),
         };
         let map = object.or(
             "transform",
             Spanned { place: entry, it: Transform::IDENTITY },
-            at(|value| map_of(&steps(value)?, Transform::IDENTITY)),
+            at(|value| compose_steps(&steps(value)?, Transform::IDENTITY)),
         );
         let instances = object.get("instances");
         let relief = relief(context, object);
         let group = object.maybe("group", group);
         let visibility = visibility(object);
         for (kind, _) in SHAPE.kinds {
-            object.stray(kind, format!("`{kind}` is a shape"), format!("write shape.{kind} = {{ .. }}"));
+            object.refuse_misplaced(kind, format!("`{kind}` is a shape"), format!("write shape.{kind} = {{ .. }}"));
         }
         let name = name?.map_or_else(|| format!("object {}", number + 1), str::to_owned);
         let shape = shape.and_then(at(|value| {
             let (read, kind) = SHAPE.of(value)?;
             read(context, &name, kind)
         }));
-        let instances = instances.map_or(Some(None), |value| maps(value, map?.it).map(Some));
+        let instances = instances.map_or(Some(None), |value| instance_maps(value, map?.it).map(Some));
         let (shape, map, named, instances) = (shape?, map?, named?, instances?);
         let (group, visibility, relief) = (group?, visibility?, relief?);
         let written = &shape.it.shape;
         if let (Some(_), Shape::Mesh(mesh)) = (named.it.medium(), written) {
-            glass_on(mesh, context.averaged.contains(&Arc::as_ptr(mesh)))
+            glass_mesh_warnings(mesh, context.averaged_meshes.contains(&Arc::as_ptr(mesh)))
                 .into_iter()
-                .for_each(|what| context.warn(format!("{name}: {what}")));
+                .for_each(|problem| context.warn(format!("{name}: {problem}")));
         }
         if let (Shape::Mesh(mesh), Some(file)) = (written, shape.it.file)
             && mesh.bare() > 0
             && (named.it.varies() || relief.is_some())
         {
-            let what = match mesh.bare() {
+            let problem = match mesh.bare() {
                 1 => format!("1 triangle of {file} has no texture coordinates: it shows"),
                 bare => format!("{bare} triangles of {file} have no texture coordinates: they show"),
             };
-            context.warn(format!("{name}: {what} the image where u and v are 0"));
+            context.warn(format!("{name}: {problem} the image where u and v are 0"));
         }
         Some(ObjectDraft { name, material: named.place.text()?, shape, map, instances, relief, group, visibility })
     })
@@ -109,11 +109,11 @@ pub(super) fn object<'d>(
 
 /// Angle in degrees between a face and its normals above which an edge is sharp: larger than that of an icosahedron,
 /// and smaller than that of a box.
-const SHARP: f64 = 40.0;
+const SHARP_DEGREES: f64 = 40.0;
 
 /// Returns what is wrong with a mesh as the surface of a clear body. `is_averaged` says that its normals are averages
 /// of those of its faces.
-fn glass_on(mesh: &Mesh, is_averaged: bool) -> Vec<String> {
+fn glass_mesh_warnings(mesh: &Mesh, is_averaged: bool) -> Vec<String> {
     let mut found = Vec::new();
     if !mesh.is_closed() {
         let reverse = "reverse the order of the corners, or recalculate the normals in the program that made it";
@@ -124,7 +124,7 @@ fn glass_on(mesh: &Mesh, is_averaged: bool) -> Vec<String> {
         });
     }
     let bend = if is_averaged { mesh.bend() } else { 0.0 };
-    if bend > SHARP {
+    if bend > SHARP_DEGREES {
         found.push(format!(
             "this mesh has no normals, and `smooth` bends those of its faces by up to {bend:.0} degrees, so that \
              sharp edges look round and glass may trap light: leave it out, or save the mesh with normals"
@@ -154,15 +154,15 @@ fn visibility(object: &mut Fields) -> Option<Visibility> {
 
 /// Reads the name of an object or a light.
 pub(super) fn name(value: Value<'_>) -> Option<&str> {
-    not_empty(value, "a name cannot be empty", "leave `name` out if there is none")
+    non_empty_text(value, "a name cannot be empty", "leave `name` out if there is none")
 }
 
 /// Reads the name of a group of lights.
 pub(super) fn group(value: Value<'_>) -> Option<&str> {
-    not_empty(value, "the name of a light group cannot be empty", "such as group = \"key\"")
+    non_empty_text(value, "the name of a light group cannot be empty", "such as group = \"key\"")
 }
 
-fn not_empty<'d>(value: Value<'d>, message: &str, help: &str) -> Option<&'d str> {
+fn non_empty_text<'d>(value: Value<'d>, message: &str, help: &str) -> Option<&'d str> {
     let text = value.text()?;
     if text.is_empty() { value.advise(message, help) } else { Some(text) }
 }
@@ -172,7 +172,7 @@ impl<'m, 'd> Names<'m, 'd> {
     fn help(&self, object: Option<&str>) -> Option<String> {
         let known = self.materials.keys().copied();
         let (first, object) = (known.clone().next()?, object.unwrap_or("it"));
-        Some(format!("give {object} one, as in material = {first:?}; {}", defined(known)))
+        Some(format!("give {object} one, as in material = {first:?}; {}", list_materials(known)))
     }
 
     /// Looks up the material of a name.
@@ -181,7 +181,7 @@ impl<'m, 'd> Names<'m, 'd> {
         if let Some(material) = self.materials.get(name) {
             return material.as_ref();
         }
-        if self.nameless || !self.unknown.insert(name) {
+        if self.has_unnamed || !self.unknown.insert(name) {
             return None;
         }
         unknown_material(value, name, self.materials.keys().copied())
@@ -189,10 +189,10 @@ impl<'m, 'd> Names<'m, 'd> {
 }
 
 /// Reads the transforms of instances, each applied after that of the whole object.
-fn maps(value: Value, first: Transform) -> Option<Vec<Spanned<Transform>>> {
-    let maps = value.list(at(|value| map_of(&steps(value)?, first)))?;
-    match maps.is_empty() {
+fn instance_maps(value: Value, first: Transform) -> Option<Vec<Spanned<Transform>>> {
+    let instance_maps = value.list(at(|value| compose_steps(&steps(value)?, first)))?;
+    match instance_maps.is_empty() {
         true => value.refuse("an empty list of instances leaves nothing of the object"),
-        false => Some(maps),
+        false => Some(instance_maps),
     }
 }

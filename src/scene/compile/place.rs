@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::object::ObjectDraft;
 use super::parts::Materials;
-use super::shape::fits;
+use super::shape::check_size;
 use crate::material::Material;
 use crate::math::{DVec3, Transform};
 use crate::scene::text::{Spanned, Value};
@@ -15,7 +15,7 @@ use crate::spectrum::Curve;
 
 /// The objects of a scene.
 #[derive(Default)]
-pub(super) struct Placed<'d> {
+pub(super) struct PlacedObjects<'d> {
     pub(super) objects: Vec<Object>,
     /// Where the shape of each is written.
     pub(super) shapes: Vec<Value<'d>>,
@@ -23,7 +23,7 @@ pub(super) struct Placed<'d> {
     pub(super) materials: Vec<NamedMaterial<Curve>>,
 }
 
-impl Placed<'_> {
+impl PlacedObjects<'_> {
     /// Returns the material of an object, with its name.
     pub(super) fn material(&self, object: &Object) -> &NamedMaterial<Curve> {
         &self.materials[object.material as usize]
@@ -36,8 +36,8 @@ impl Placed<'_> {
 }
 
 /// Places all objects without mistakes.
-pub(super) fn placed<'d>(drafts: Vec<ObjectDraft<'d>>, materials: &Materials<'d>) -> Placed<'d> {
-    let (mut placed, mut numbers) = (Placed::default(), BTreeMap::<&str, u32>::new());
+pub(super) fn placed<'d>(drafts: Vec<ObjectDraft<'d>>, materials: &Materials<'d>) -> PlacedObjects<'d> {
+    let (mut placed, mut numbers) = (PlacedObjects::default(), BTreeMap::<&str, u32>::new());
     // Number of times that each mesh file is placed.
     let mut places = HashMap::<&str, usize>::new();
     for draft in &drafts {
@@ -58,11 +58,11 @@ pub(super) fn placed<'d>(drafts: Vec<ObjectDraft<'d>>, materials: &Materials<'d>
         };
         let (shape, name) = (draft.shape.place, draft.material);
         let is_shared = draft.shape.it.file.is_some_and(|file| places[file] > 1);
-        let objects = objects_of(draft, is_shared, number, material.varies()).unwrap_or_default();
+        let objects = build_objects(draft, is_shared, number, material.varies()).unwrap_or_default();
         for (instance, mut object) in objects.into_iter().enumerate() {
             if let Some(map) = maps.get(instance) {
                 let (name, material) = (name.to_owned(), material.turned(map));
-                if lies_across(&material, &object.shape) {
+                if has_axis_along_normal(&material, &object.shape) {
                     let message = format!("the axis of material {name} is along the normal of this surface");
                     shape.advise::<()>(message, "an axis must lie in the surface; both turn with the object");
                     break;
@@ -78,16 +78,16 @@ pub(super) fn placed<'d>(drafts: Vec<ObjectDraft<'d>>, materials: &Materials<'d>
 }
 
 /// Returns whether the axis of a material favors no direction on a flat shape, because it is along its normal.
-fn lies_across(material: &Material<Curve>, shape: &Shape) -> bool {
+fn has_axis_along_normal(material: &Material<Curve>, shape: &Shape) -> bool {
     let axis = material.axis().and_then(DVec3::try_normalize);
-    axis.zip(shape.flat_normal()).is_some_and(|(axis, normal)| axis.cross(normal).length() < ALONG)
+    axis.zip(shape.flat_normal()).is_some_and(|(axis, normal)| axis.cross(normal).length() < PARALLEL_SINE)
 }
 
 /// Sine of the angle that rounding in a few rotations can leave in place of 0.
-const ALONG: f64 = 1e-9;
+const PARALLEL_SINE: f64 = 1e-9;
 
 /// Returns the object, or each of its instances. `is_shared` says that its mesh is placed elsewhere, too.
-fn objects_of(draft: ObjectDraft, is_shared: bool, material: u32, varies: bool) -> Option<Vec<Object>> {
+fn build_objects(draft: ObjectDraft, is_shared: bool, material: u32, varies: bool) -> Option<Vec<Object>> {
     let ObjectDraft {
         name,
         material: material_name,
@@ -106,7 +106,7 @@ fn objects_of(draft: ObjectDraft, is_shared: bool, material: u32, varies: bool) 
         }
         let coordinates = coordinates.map(Arc::new);
         let relief = match &relief {
-            Some(relief) => Some(relief.on(coordinates.as_ref())?),
+            Some(relief) => Some(relief.apply_to(coordinates.as_ref())?),
             None => None,
         };
         let (shape, asset, group) = (Arc::new(shape), asset.clone(), group.clone());
@@ -115,12 +115,12 @@ fn objects_of(draft: ObjectDraft, is_shared: bool, material: u32, varies: bool) 
     let Some(instances) = instances else {
         let coordinates = Coordinates::new(&written.shape, &map.it);
         let shape = if is_shared { written.shape.copied(&map.it) } else { written.shape.transformed(&map.it) };
-        fits(&written.shape, &shape, map, place)?;
+        check_size(&written.shape, &shape, map, place)?;
         return Some(vec![object(name, shape, coordinates)?]);
     };
     let instance = |(number, map): (usize, Spanned<Transform>)| {
         let shape = written.shape.copied(&map.it);
-        fits(&written.shape, &shape, map, map.place)?;
+        check_size(&written.shape, &shape, map, map.place)?;
         object(format!("{name} [{}]", number + 1), shape, Coordinates::new(&written.shape, &map.it))
     };
     let placed: Vec<_> = instances.into_iter().enumerate().map(instance).collect();

@@ -7,12 +7,12 @@
 use super::context::Context;
 use super::curve_text::CurveText;
 use crate::scene::text::Value;
-use crate::spectrum::visible::{EFFICACY, luminous};
+use crate::spectrum::visible::{EFFICACY, y_integral};
 use crate::spectrum::{Curve, CurveKind};
 
 /// Converts the light of a curve to a film whose white has the luminance that the scene gives. Without one, the curve
 /// stays as it is.
-pub(super) fn on_film(context: &Context, text: &CurveText, curve: Curve) -> Option<Curve> {
+pub(super) fn scale_to_film(context: &Context, text: &CurveText, curve: Curve) -> Option<Curve> {
     let Some(white) = context.white_luminance else { return Some(curve) };
     let unit = match curve.kind {
         CurveKind::Illuminant(_) | CurveKind::Blackbody(_) if curve.luminance.is_none() => {
@@ -21,17 +21,17 @@ pub(super) fn on_film(context: &Context, text: &CurveText, curve: Curve) -> Opti
             return text.value.advise(message, help);
         }
         // A flat spectrum of 1 otherwise has luminance 1.
-        CurveKind::Samples(_) | CurveKind::Lines(_) if curve.luminance.is_none() => EFFICACY * luminous(),
+        CurveKind::Samples(_) | CurveKind::Lines(_) if curve.luminance.is_none() => EFFICACY * y_integral(),
         _ => 1.0,
     };
-    Some(brighter(curve, unit / white))
+    Some(scaled(curve, unit / white))
 }
 
 /// Converts an intensity in cd or W / (sr nm) for distances in scene units.
 pub(super) fn intensity(context: &Context, place: Value, intensity: Curve) -> Option<Curve> {
     match (context.white_luminance, context.meters_per_unit) {
         (None, _) => Some(intensity),
-        (Some(_), Some(meters)) => Some(brighter(intensity, 1.0 / (meters * meters))),
+        (Some(_), Some(meters)) => Some(scaled(intensity, 1.0 / (meters * meters))),
         (Some(_), None) => {
             let message =
                 "absolute light falls off with distance in meters, but the scene does not say how long its unit is";
@@ -40,7 +40,7 @@ pub(super) fn intensity(context: &Context, place: Value, intensity: Curve) -> Op
     }
 }
 
-fn brighter(curve: Curve, factor: f64) -> Curve {
+fn scaled(curve: Curve, factor: f64) -> Curve {
     let luminance = curve.luminance.map(|luminance| luminance * factor);
     Curve { scale: curve.scale * factor, luminance, ..curve }
 }

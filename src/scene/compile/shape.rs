@@ -1,26 +1,26 @@
 //! From a shape as written to a shape that rays can hit.
 
 use super::context::Context;
-use super::measures::{MAX_LENGTH, MIN_LENGTH, direction, length, long, point};
+use super::measures::{MAX_LENGTH, MIN_LENGTH, direction, length, point, positive_length};
 use super::mesh::mesh;
-use super::written::Written;
+use super::written::ShapeText;
 use crate::math::{DVec3, Transform};
 use crate::scene::text::{Choice, Fields, Spanned, Value, at, exactly};
 use crate::shape::{Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};
 
 /// Smallest size relative to the coordinates: several thousand rounding errors.
-const RESOLVED: f64 = 1e-12;
+const MIN_RELATIVE_SIZE: f64 = 1e-12;
 
 /// The reader of a kind of shape. It also receives the name of the object.
-type ShapeReader = for<'d> fn(&mut Context, &str, Value<'d>) -> Option<Written<'d>>;
+type ShapeReader = for<'d> fn(&mut Context, &str, Value<'d>) -> Option<ShapeText<'d>>;
 
 /// The shapes. Each is documented where it is implemented, in `shape`.
 pub(super) const SHAPE: Choice<ShapeReader> = Choice {
     name: "a shape",
     word: "shape",
     example: "shape.sphere = { center = [0, 1, 0], radius = 1 }",
-    apart: "start another [[object]] for the second shape",
-    beside: &[
+    second_kind_help: "start another [[object]] for the second shape",
+    outside_keys: &[
         "name",
         "material",
         "transform",
@@ -33,12 +33,12 @@ pub(super) const SHAPE: Choice<ShapeReader> = Choice {
         "normal_map",
     ],
     kinds: &[
-        ("plane", |_, _, value| plane(value).map(Written::from)),
-        ("triangle", |_, _, value| triangle(value).map(Written::from)),
-        ("sphere", |_, _, value| sphere(value).map(Written::from)),
-        ("disc", |_, _, value| disc(value).map(Written::from)),
-        ("quad", |_, _, value| quad(value).map(Written::from)),
-        ("cube", |_, _, value| cube(value).map(Written::from)),
+        ("plane", |_, _, value| plane(value).map(ShapeText::from)),
+        ("triangle", |_, _, value| triangle(value).map(ShapeText::from)),
+        ("sphere", |_, _, value| sphere(value).map(ShapeText::from)),
+        ("disc", |_, _, value| disc(value).map(ShapeText::from)),
+        ("quad", |_, _, value| quad(value).map(ShapeText::from)),
+        ("cube", |_, _, value| cube(value).map(ShapeText::from)),
         ("mesh", mesh),
     ],
 };
@@ -105,7 +105,7 @@ fn cube(value: Value) -> Option<Shape> {
         let center = cube.need("center", point);
         let size = cube.need("size", |value| {
             let size: [f64; 3] = value.one_or("[x, y, z]")?;
-            size.into_iter().all(|edge| long(value, "an edge", edge).is_some()).then_some(size)
+            size.into_iter().all(|edge| positive_length(value, "an edge", edge).is_some()).then_some(size)
         });
         Some(Shape::Cube(Cube::new(center?, size?.into())))
     })
@@ -113,7 +113,7 @@ fn cube(value: Value) -> Option<Shape> {
 
 /// Checks that floating-point numbers can hold the size and the place of a shape. `shape` and `placed` are the shape
 /// before and after the map; `whole` is where the shape is written.
-pub(super) fn fits(shape: &Shape, placed: &Shape, map: Spanned<Transform>, whole: Value) -> Option<()> {
+pub(super) fn check_size(shape: &Shape, placed: &Shape, map: Spanned<Transform>, whole: Value) -> Option<()> {
     let Some(bounds) = placed.bounds() else { return Some(()) };
     let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.size());
     let edges = match shape {
@@ -128,7 +128,7 @@ pub(super) fn fits(shape: &Shape, placed: &Shape, map: Spanned<Transform>, whole
     if !(thin >= MIN_LENGTH && far <= 2.0 * MAX_LENGTH) {
         return map.place.refuse("this makes the shape too small, too large or too far away");
     }
-    if thin < RESOLVED * far {
+    if thin < MIN_RELATIVE_SIZE * far {
         return whole.refuse("this is so small or thin that rounding its coordinates would distort it");
     }
     Some(())

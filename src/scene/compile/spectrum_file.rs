@@ -25,7 +25,7 @@ pub(super) struct TableFault {
 /// # Errors
 /// The line and what is wrong with it.
 pub(super) fn read_columns(text: &str, column: usize) -> Result<Vec<Row>, TableFault> {
-    let (mut rows, mut titles) = (Vec::new(), true);
+    let (mut rows, mut may_be_titles) = (Vec::new(), true);
     // A single carriage return ends a line as well.
     let lines = text.trim_start_matches('\u{feff}').lines().flat_map(|line| line.split('\r'));
     for (number, line) in lines.enumerate() {
@@ -36,15 +36,15 @@ pub(super) fn read_columns(text: &str, column: usize) -> Result<Vec<Row>, TableF
         let cells = cells(line);
         let number_in = |at: usize| cells.get(at).map(|cell| cell.parse::<f64>().map_err(|_| *cell));
         match (number_in(0), number_in(column - 1)) {
-            (Some(Err(_)), _) if titles => {}
+            (Some(Err(_)), _) if may_be_titles => {}
             (Some(Ok(nm)), Some(Ok(value))) => rows.push(Row { line: number + 1, pair: [nm, value] }),
-            (Some(Err(cell)), _) | (_, Some(Err(cell))) => return Err(no_number(number + 1, cell, rows.is_empty())),
+            (Some(Err(cell)), _) | (_, Some(Err(cell))) => return Err(not_a_number(number + 1, cell, rows.is_empty())),
             _ => {
                 let message = format!(", line {}: there is no column {column}, only {}", number + 1, cells.len());
                 return Err(TableFault { message, help: None, is_column: true });
             }
         }
-        titles = false;
+        may_be_titles = false;
     }
     match rows.is_empty() {
         true => Err(TableFault { message: " holds no numbers".into(), help: None, is_column: false }),
@@ -52,7 +52,7 @@ pub(super) fn read_columns(text: &str, column: usize) -> Result<Vec<Row>, TableF
     }
 }
 
-fn no_number(line: usize, cell: &str, first: bool) -> TableFault {
+fn not_a_number(line: usize, cell: &str, first: bool) -> TableFault {
     let message = match cell {
         "" => format!(", line {line}: a number is missing"),
         _ => format!(", line {line}: {cell:?} is not a number"),
@@ -105,16 +105,16 @@ mod tests {
     }
 
     #[test]
-    fn a_mistake_is_told_with_its_line() {
-        let told = |text, column| read_columns(text, column).unwrap_err().message;
-        assert_eq!(told("400, 0.1\n500, red", 2), ", line 2: \"red\" is not a number");
-        assert_eq!(told("nm, v\n400, 0.1", 3), ", line 2: there is no column 3, only 2");
+    fn a_mistake_is_reported_with_its_line() {
+        let message_of = |text, column| read_columns(text, column).unwrap_err().message;
+        assert_eq!(message_of("400, 0.1\n500, red", 2), ", line 2: \"red\" is not a number");
+        assert_eq!(message_of("nm, v\n400, 0.1", 3), ", line 2: there is no column 3, only 2");
         for comma in ["400;0,5", "400\t0,5", "400 0,5"] {
             let fault = read_columns(comma, 2).unwrap_err();
             assert_eq!(fault.message, ", line 1: \"0,5\" is not a number");
             assert_eq!(fault.help.as_deref(), Some("use `.` as the decimal point"));
         }
-        assert_eq!(told("\"400\",\"0,5\"", 2), ", line 1: \"\\\"0\" is not a number");
-        assert_eq!(told("# nothing", 2), " holds no numbers");
+        assert_eq!(message_of("\"400\",\"0,5\"", 2), ", line 1: \"\\\"0\" is not a number");
+        assert_eq!(message_of("# nothing", 2), " holds no numbers");
     }
 }

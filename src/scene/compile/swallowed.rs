@@ -2,10 +2,10 @@
 
 use std::cmp::Ordering;
 
-use super::inside_out::bodies_around;
-use super::place::Placed;
+use super::inside_out::winding_number;
+use super::place::PlacedObjects;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
-use crate::scene::checks::met_from_outside;
+use crate::scene::checks::hit_from_outside;
 use crate::scene::text::and_more;
 use crate::scene::{Object, Visibility};
 use crate::shape::{Shape, SurfacePoint};
@@ -13,27 +13,27 @@ use crate::shape::{Shape, SurfacePoint};
 /// Points of a body that must all lie in the other one.
 const POINTS: u32 = 64;
 /// Maximum number of clear bodies that are compared with one another.
-const MOST: usize = 2048;
+const MAX_BODIES: usize = 2048;
 
 /// Returns a warning about bodies that lie within another one of higher priority, or of the same priority with a
 /// material that is first used later. Meshes of higher priority are exempt: they may have a cavity, filled by a body
 /// that reaches into the walls.
-pub(super) fn swallowed(placed: &Placed) -> Option<String> {
+pub(super) fn swallowed(placed: &PlacedObjects) -> Option<String> {
     let priority = |object: &Object| Some(placed.material(object).material.medium()?.priority);
     let clear = placed.objects.iter().filter_map(|object| Some((object, priority(object)?)));
-    let clear: Vec<(&Object, i32)> = clear.take(MOST).collect();
-    let around = |(body, own): (&Object, i32)| {
-        let is_there = |other: &Object, priority: i32| match priority.cmp(&own) {
+    let clear: Vec<(&Object, i32)> = clear.take(MAX_BODIES).collect();
+    let enclosing = |(body, own): (&Object, i32)| {
+        let takes_precedence = |other: &Object, priority: i32| match priority.cmp(&own) {
             Ordering::Less => false,
             Ordering::Equal => other.material > body.material,
             Ordering::Greater => {
                 other.visibility == Visibility::Shown && !matches!(&*other.shape, Shape::Mesh(_) | Shape::Instance(_))
             }
         };
-        let mut others = clear.iter().filter(|(other, priority)| is_there(other, *priority));
+        let mut others = clear.iter().filter(|(other, priority)| takes_precedence(other, *priority));
         others.find(|(other, _)| lies_within(&body.shape, &other.shape)).copied()
     };
-    let mut found = clear.iter().filter_map(|&body| Some((body, around(body)?)));
+    let mut found = clear.iter().filter_map(|&body| Some((body, enclosing(body)?)));
     let ((body, own), (other, priority)) = found.next()?;
     let why = if priority > own { "a higher priority" } else { "the same priority that is used later" };
     Some(format!(
@@ -57,15 +57,15 @@ fn lies_within(body: &Shape, other: &Shape) -> bool {
     }
     let points = (0..POINTS).filter_map(|number| {
         let sampler = Sampler::new(6, [number, 0], 0);
-        let [x, y, z, _] = sampler.four_plain(BranchKey::CAMERA, 0);
-        let [u, v, ..] = sampler.four_plain(BranchKey::CAMERA, 1);
-        met_from_outside(body, DVec3::new(x, y, z), [u, v])
+        let [x, y, z, _] = sampler.get_random_4d(BranchKey::CAMERA, 0);
+        let [u, v, ..] = sampler.get_random_4d(BranchKey::CAMERA, 1);
+        hit_from_outside(body, DVec3::new(x, y, z), [u, v])
     });
     let points: Vec<(SurfacePoint, DVec3)> = points.collect();
     // A ray along a plane's normal leads out of what is behind the plane.
     let out = |direction| other.flat_normal().unwrap_or(direction);
-    let is_inside = |(point, way): &(SurfacePoint, DVec3)| {
-        bodies_around(other, &Ray { origin: point.position, direction: out(*way) }) > 0
+    let is_inside = |(point, ray_direction): &(SurfacePoint, DVec3)| {
+        winding_number(other, &Ray { origin: point.position, direction: out(*ray_direction) }) > 0
     };
     !points.is_empty() && points.iter().all(is_inside)
 }

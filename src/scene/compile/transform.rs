@@ -1,6 +1,6 @@
 //! The steps of a transform.
 
-use super::measures::{direction, near, point};
+use super::measures::{direction, in_range, point};
 use crate::math::{DMat3, DVec3, Transform};
 use crate::scene::text::{Choice, Fields, Spanned, Value, at};
 
@@ -22,11 +22,11 @@ const STEP: Choice<for<'d> fn(Value<'d>) -> Option<Step>> = Choice {
     name: "a step of a transform",
     word: "step of a transform",
     example: "{ translate = [0, 1, 0] }",
-    apart: "write one step after the other: [{ scale = 2 }, { translate = [0, 1, 0] }]",
-    beside: &[],
+    second_kind_help: "write one step after the other: [{ scale = 2 }, { translate = [0, 1, 0] }]",
+    outside_keys: &[],
     kinds: &[
         ("scale", |value| {
-            let factors = near(value, "a scale", value.one_or("[x, y, z]")?)?;
+            let factors = in_range(value, "a scale", value.one_or("[x, y, z]")?)?;
             Some(Step::Scale(factors.into()))
         }),
         ("rotate", |value| {
@@ -45,7 +45,7 @@ const STEP: Choice<for<'d> fn(Value<'d>) -> Option<Step>> = Choice {
 /// Reads four rows of four numbers. The last row must be 0, 0, 0, 1.
 fn matrix(value: Value) -> Option<Transform> {
     let help = "write four rows of four numbers, the last of them [0, 0, 0, 1]";
-    let row = |row: Value| near(row, "an entry of a matrix", row.as_list("a row of a matrix", help).numbers()?);
+    let row = |row: Value| in_range(row, "an entry of a matrix", row.as_list("a row of a matrix", help).numbers()?);
     if value.node().as_array().is_none_or(|rows| rows.len() != 4) {
         return value.advise("a matrix is a list of 4 rows", help);
     }
@@ -71,7 +71,7 @@ pub(super) fn steps(value: Value) -> Option<Vec<Spanned<Step>>> {
 }
 
 /// Returns the map of the steps, one after another, applied after a first map.
-pub(super) fn map_of(steps: &[Spanned<Step>], first: Transform) -> Option<Transform> {
+pub(super) fn compose_steps(steps: &[Spanned<Step>], first: Transform) -> Option<Transform> {
     steps.iter().try_fold(first, |map, Spanned { place, it: step }| {
         let next = match *step {
             Step::Scale(factors) => Transform::scale(factors),

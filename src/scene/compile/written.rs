@@ -3,13 +3,13 @@
 use crate::shape::Shape;
 
 /// A shape before any transform.
-pub(super) struct Written<'d> {
+pub(super) struct ShapeText<'d> {
     pub(super) shape: Shape,
     /// The file that it was read from.
     pub(super) file: Option<&'d str>,
 }
 
-impl From<Shape> for Written<'_> {
+impl From<Shape> for ShapeText<'_> {
     fn from(shape: Shape) -> Self {
         Self { shape, file: None }
     }

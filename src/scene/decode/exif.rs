@@ -1,7 +1,7 @@
 //! The orientation of a photo's camera (JEITA 2023, *Exif 3.0*, section 4.6.5).
 
 /// Returns whether a photo has to be turned or mirrored to be upright.
-pub(super) fn is_turned(exif: &[u8]) -> bool {
+pub(super) fn is_rotated(exif: &[u8]) -> bool {
     orientation(exif).is_some_and(|orientation| (2..=8).contains(&orientation))
 }
 

@@ -5,10 +5,10 @@ use exr::block::reader::ChunksReader;
 use exr::meta::header::Header;
 use exr::prelude::{AttributeValue, Compression, SampleType, Vec2, f16};
 
-use super::exr_channels::Chosen;
-use super::texels::{Floats, Unreadable, fits};
-use crate::film::{claims_fit, exr_primaries, exr_text};
-use crate::spectrum::{Matrix, matrix_of_file};
+use super::exr_channels::ChosenChannels;
+use super::texels::{FloatImage, Unreadable, fits};
+use crate::film::{check_claimed_sizes, exr_primaries, exr_text};
+use crate::spectrum::{Matrix, file_to_rec709};
 
 /// Reads the colors or the gray of an OpenEXR file, and alpha if requested. An alpha that is missing is 1.
 ///
@@ -17,19 +17,19 @@ use crate::spectrum::{Matrix, matrix_of_file};
 ///
 /// # Errors
 /// If the file is not an OpenEXR file, is damaged, claims an impossible size, or has no channels that make an image.
-pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unreadable> {
+pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<FloatImage, Unreadable> {
     let reader = exr::block::read(Cursor::new(bytes), false).map_err(unreadable)?;
-    let fit = |size: Vec2<usize>, channels: usize| {
+    let check_size = |size: Vec2<usize>, channels: usize| {
         let length = (size.width() as u64 * size.height() as u64).saturating_mul(4 * channels as u64);
         fits(size.width(), size.height(), length, bytes)
     };
-    reader.headers().iter().try_for_each(|header| fit(header.layer_size, if alpha { 4 } else { 3 }))?;
-    claims_fit(bytes)?;
-    let chosen = Chosen::of(reader.headers(), alpha)?;
+    reader.headers().iter().try_for_each(|header| check_size(header.layer_size, if alpha { 4 } else { 3 }))?;
+    check_claimed_sizes(bytes)?;
+    let chosen = ChosenChannels::of(reader.headers(), alpha)?;
     let header = reader.headers()[chosen.part].clone();
     let (size, channels) = (header.shared_attributes.display_window.size, chosen.channels());
-    fit(size, channels)?;
-    let mut floats = Floats {
+    check_size(size, channels)?;
+    let mut floats = FloatImage {
         width: size.width(),
         channels,
         has_alpha: alpha,
@@ -40,27 +40,27 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
     };
     let chunks = reader
         .filter_chunks(false, |_, tile, block| block.layer == chosen.part && tile.is_largest_resolution_level())?;
-    let keep_all = chunks.decompress_sequential(false, |_, block| {
-        keep(&mut floats, &block, &header, &chosen);
+    let result = chunks.decompress_sequential(false, |_, block| {
+        store_block(&mut floats, &block, &header, &chosen);
         Ok(())
     });
-    keep_all.map_err(unreadable)?;
+    result.map_err(unreadable)?;
     Ok(floats)
 }
 
 /// Separates files that other programs may be able to read from files that are not OpenEXR.
 fn unreadable(error: exr::error::Error) -> Unreadable {
     match error {
-        exr::error::Error::NotSupported(what) if what.contains("subsampling") => Unreadable::Sparse,
-        exr::error::Error::NotSupported(what) if what.contains("deep") => Unreadable::Deep,
-        exr::error::Error::NotSupported(what) if what.contains("compression method") => Unreadable::Compression,
+        exr::error::Error::NotSupported(feature) if feature.contains("subsampling") => Unreadable::Sparse,
+        exr::error::Error::NotSupported(feature) if feature.contains("deep") => Unreadable::Deep,
+        exr::error::Error::NotSupported(feature) if feature.contains("compression method") => Unreadable::Compression,
         other => other.into(),
     }
 }
 
 /// Returns whether a compression preserves the look of an image rather than its numbers. PXR24 does not count: it only
 /// rounds numbers and never changes their sign.
-fn is_lossy(header: &Header, chosen: &Chosen) -> bool {
+fn is_lossy(header: &Header, chosen: &ChosenChannels) -> bool {
     let is_half = |channel: &usize| header.channels.list[*channel].sample_type == SampleType::F16;
     match header.compression {
         Compression::DWAA(_) | Compression::DWAB(_) => true,
@@ -76,11 +76,11 @@ fn to_rec709(header: &Header) -> Result<Matrix, String> {
         AttributeValue::Text(id) if key == "colorInteropID" => Some(exr_text(id)),
         _ => None,
     });
-    matrix_of_file(id.as_deref(), header.shared_attributes.chromaticities.map(exr_primaries))
+    file_to_rec709(id.as_deref(), header.shared_attributes.chromaticities.map(exr_primaries))
 }
 
 /// Stores the chosen numbers of a block at their places in the display window.
-fn keep(floats: &mut Floats, block: &UncompressedBlock, header: &Header, chosen: &Chosen) {
+fn store_block(floats: &mut FloatImage, block: &UncompressedBlock, header: &Header, chosen: &ChosenChannels) {
     let (data, display) = (header.own_attributes.layer_position, header.shared_attributes.display_window.position);
     let shift = [i64::from(data.x()) - i64::from(display.x()), i64::from(data.y()) - i64::from(display.y())];
     let mut put = |x: usize, y: usize, number: usize, value: f32| {

@@ -8,17 +8,17 @@ use crate::film::exr_text;
 /// Names of red, green, blue and alpha within a layer.
 const LETTERS: [[&str; 4]; 2] = [["R", "G", "B", "A"], ["r", "g", "b", "a"]];
 /// Maximum number of channel names in a message.
-const MOST_NAMES: usize = 12;
+const MAX_NAMES: usize = 12;
 
 /// The channels that are read.
-pub(super) struct Chosen {
+pub(super) struct ChosenChannels {
     /// The part of the file that contains them.
     pub(super) part: usize,
     /// For each number of a texel, the index of its channel in the part; none for an alpha that is 1 everywhere.
     pub(super) numbers: Vec<Option<usize>>,
 }
 
-impl Chosen {
+impl ChosenChannels {
     /// Chooses red, green and blue, or a gray, followed by alpha if requested.
     ///
     /// Colors without a layer are preferred, then those of the first layer that has them. If there are no colors
@@ -28,7 +28,7 @@ impl Chosen {
     /// If there is neither a color nor a gray.
     pub(super) fn of(headers: &[Header], alpha: bool) -> Result<Self, Unreadable> {
         let flat = headers.iter().enumerate().filter(|(_, header)| !header.deep);
-        let parts: Vec<NumberPart> = flat.map(|(number, header)| NumberPart::of(number, header)).collect();
+        let parts: Vec<FlatPart> = flat.map(|(number, header)| FlatPart::of(number, header)).collect();
         if parts.is_empty() {
             return Err(Unreadable::Deep);
         }
@@ -40,7 +40,7 @@ impl Chosen {
             .or_else(|| parts.iter().find_map(|part| Some((part, part.luminance()?))))
             .or_else(|| only(names().filter(|name| !is_alpha(name))).and_then(|name| gray(&parts, name)))
             .or_else(|| only(names()).and_then(|name| gray(&parts, name)))
-            .ok_or_else(|| Unreadable::Channels(listed(names())))?;
+            .ok_or_else(|| Unreadable::Channels(list_names(names())))?;
         let (colors, own_alpha) = (channels.colors, channels.alpha);
         // A lone alpha is the gray itself.
         let alpha_alone = own_alpha.is_some_and(|alpha| colors == [alpha]);
@@ -56,7 +56,7 @@ impl Chosen {
 }
 
 /// A part with one number per pixel in each channel.
-struct NumberPart {
+struct FlatPart {
     number: usize,
     /// The names of its channels, in their order.
     names: Vec<String>,
@@ -68,7 +68,7 @@ struct Channels {
     alpha: Option<usize>,
 }
 
-impl NumberPart {
+impl FlatPart {
     fn of(number: usize, header: &Header) -> Self {
         Self { number, names: header.channels.list.iter().map(|channel| exr_text(&channel.name)).collect() }
     }
@@ -97,7 +97,7 @@ impl NumberPart {
 }
 
 /// Returns the channel of a name as a gray, with the alpha of its layer.
-fn gray<'p>(parts: &'p [NumberPart], name: &String) -> Option<(&'p NumberPart, Channels)> {
+fn gray<'p>(parts: &'p [FlatPart], name: &String) -> Option<(&'p FlatPart, Channels)> {
     let part = parts.iter().find(|part| part.names.contains(name))?;
     let alpha = ["A", "a"].into_iter().find_map(|letter| part.find(layer_of(name), letter));
     let color = part.find(layer_of(name), letter_of(name))?;
@@ -121,10 +121,10 @@ fn is_alpha(name: &str) -> bool {
 }
 
 /// Lists names as `N.X, N.Y, N.Z`.
-fn listed<'n>(names: impl Iterator<Item = &'n String>) -> String {
+fn list_names<'n>(names: impl Iterator<Item = &'n String>) -> String {
     let mut names: Vec<&str> = names.map(String::as_str).collect();
-    if names.len() > MOST_NAMES {
-        names.truncate(MOST_NAMES);
+    if names.len() > MAX_NAMES {
+        names.truncate(MAX_NAMES);
         names.push("..");
     }
     names.join(", ")

@@ -4,14 +4,14 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use super::texels::{Steps, Unreadable, Whole, fits};
+use super::texels::{IntegerImage, IntegerTexels, Unreadable, fits};
 use super::{exif, icc};
 
 /// Reads a JPEG. Gray stays gray; all other colors become red, green and blue.
 ///
 /// # Errors
 /// If the file is not a JPEG, is damaged, or claims an impossible size.
-pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
+pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<IntegerImage, Unreadable> {
     let any = DecoderOptions::default().set_strict_mode(false).set_max_width(usize::MAX).set_max_height(usize::MAX);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), any);
     decoder.decode_headers()?;
@@ -28,8 +28,8 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
         return Err(Unreadable::Short);
     }
     let not_srgb = decoder.icc_profile().and_then(|profile| icc::not_srgb(&profile));
-    let is_turned = decoder.exif().is_some_and(|exif| exif::is_turned(exif));
-    Ok(Whole { width, channels, not_srgb, is_turned, steps: Steps::Bytes(numbers) })
+    let is_rotated = decoder.exif().is_some_and(|exif| exif::is_rotated(exif));
+    Ok(IntegerImage { width, channels, not_srgb, is_rotated, steps: IntegerTexels::Bytes(numbers) })
 }
 
 /// Returns whether the markers of a file (ITU-T T.81, B.1.1) lead to the end of its image. Anything may follow that.

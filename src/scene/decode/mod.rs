@@ -13,4 +13,4 @@ pub(super) use exr::decode as decode_exr;
 pub(super) use jpeg::decode as decode_jpeg;
 pub(super) use png::decode as decode_png;
 pub(super) use radiance::decode as decode_radiance;
-pub(super) use texels::{Floats, Steps, Unreadable, Whole};
+pub(super) use texels::{FloatImage, IntegerImage, IntegerTexels, Unreadable};

@@ -2,7 +2,7 @@ use std::io::Cursor;
 
 use png::{BitDepth, Decoder, DecodingError, Info, Limits, ScaledFloat, SourceChromaticities, Transformations};
 
-use super::texels::{Steps, Unreadable, Whole, fits};
+use super::texels::{IntegerImage, IntegerTexels, Unreadable, fits};
 use super::{exif, icc};
 use crate::film::MOST_TEXELS;
 use crate::spectrum::{ColorSpace, Primaries};
@@ -11,7 +11,7 @@ use crate::spectrum::{ColorSpace, Primaries};
 ///
 /// # Errors
 /// If the file is not a PNG, is damaged, or claims an impossible size.
-pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
+pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<IntegerImage, Unreadable> {
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 12 * MOST_TEXELS });
     decoder.set_ignore_text_chunk(true);
     decoder.set_transformations(Transformations::EXPAND);
@@ -22,20 +22,22 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
     let mut numbers = vec![0; size];
     reader.next_frame(&mut numbers)?;
     let not_srgb = not_srgb(reader.info());
-    let is_turned = reader.info().exif_metadata.as_deref().is_some_and(exif::is_turned);
+    let is_rotated = reader.info().exif_metadata.as_deref().is_some_and(exif::is_rotated);
     let (color, depth) = reader.output_color_type();
     let steps = match depth {
-        BitDepth::Sixteen => Steps::Words(numbers.as_chunks().0.iter().map(|word| u16::from_be_bytes(*word)).collect()),
-        _ => Steps::Bytes(numbers),
+        BitDepth::Sixteen => {
+            IntegerTexels::Words(numbers.as_chunks().0.iter().map(|word| u16::from_be_bytes(*word)).collect())
+        }
+        _ => IntegerTexels::Bytes(numbers),
     };
-    Ok(Whole { width, channels: color.samples(), not_srgb, is_turned, steps })
+    Ok(IntegerImage { width, channels: color.samples(), not_srgb, is_rotated, steps })
 }
 
 /// Returns what a file says about its colors, if they are not sRGB. The chunk that takes precedence decides.
 fn not_srgb(info: &Info) -> Option<String> {
     if let Some(points) = info.coding_independent_code_points {
-        let said = [points.color_primaries, points.transfer_function];
-        return (!SRGB_POINTS.contains(&said)).then(|| format!("cICP {} {}", said[0], said[1]));
+        let codes = [points.color_primaries, points.transfer_function];
+        return (!SRGB_POINTS.contains(&codes)).then(|| format!("cICP {} {}", codes[0], codes[1]));
     }
     if let Some(profile) = &info.icc_profile {
         return icc::not_srgb(profile);
@@ -44,14 +46,14 @@ fn not_srgb(info: &Info) -> Option<String> {
         return None;
     }
     let gamma = info.gama_chunk.map(ScaledFloat::into_value).filter(|gamma| (gamma * 2.2 - 1.0).abs() > 0.02);
-    let others = |found: &SourceChromaticities| {
+    let has_other_primaries = |found: &SourceChromaticities| {
         let found = [found.red, found.green, found.blue, found.white].map(|(x, y)| [x, y].map(ScaledFloat::into_value));
         let Primaries { red, green, blue, white } = ColorSpace::Rec709.primaries();
         let known = [red, green, blue, white];
         let pairs = found.as_flattened().iter().zip(known.as_flattened());
         pairs.into_iter().any(|(found, known)| (f64::from(*found) - known).abs() > 0.005)
     };
-    let primaries = info.chrm_chunk.filter(others).map(|_| "other primaries (cHRM)".to_owned());
+    let primaries = info.chrm_chunk.filter(has_other_primaries).map(|_| "other primaries (cHRM)".to_owned());
     gamma.map(|gamma| format!("a gamma of {gamma} (gAMA)")).or(primaries)
 }
 

@@ -2,21 +2,21 @@
 //!
 //! G. Ward, "Real Pixels", Graphics Gems II (1991); "Radiance File Formats", Lawrence Berkeley National Laboratory.
 
-use super::texels::{Floats, Unreadable, fits};
-use crate::spectrum::{Matrix, Primaries, matrix_of_file};
+use super::texels::{FloatImage, Unreadable, fits};
+use crate::spectrum::{Matrix, Primaries, file_to_rec709};
 
 /// Signatures of files from Radiance itself, and from other programs.
 const SIGNATURES: [&[u8]; 2] = [b"#?RADIANCE", b"#?RGBE"];
 const FORMAT: &str = "32-bit_rle_rgbe";
 /// Row lengths, in texels, that the newer packing supports.
-const PACKED: std::ops::Range<usize> = 8..1 << 15;
+const PACKED_WIDTHS: std::ops::Range<usize> = 8..1 << 15;
 
 /// Reads an RGBE picture in the newer packing, the older one or none. Divides out the factors that the light was
 /// multiplied by.
 ///
 /// # Errors
 /// If the file is not such a picture, is damaged, or claims an impossible size.
-pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Floats, Unreadable> {
+pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<FloatImage, Unreadable> {
     let rest = SIGNATURES.iter().find_map(|signature| bytes.strip_prefix(*signature)).ok_or(Unreadable::Signature)?;
     let mut reader = RadianceReader { rest, row: 0 };
     let Header { size: [width, height], factors, to_rec709 } = reader.header()?;
@@ -35,7 +35,7 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Floats, Unreadable> {
             [0, 1, 2].map(|c| (color[c] / factors[c]) as f32)
         }));
     }
-    Ok(Floats { width, channels: 3, has_alpha: false, is_lossy: false, to_rec709, numbers })
+    Ok(FloatImage { width, channels: 3, has_alpha: false, is_lossy: false, to_rec709, numbers })
 }
 
 /// What precedes the texels.
@@ -73,7 +73,7 @@ impl RadianceReader<'_> {
     /// of them have been applied.
     fn header(&mut self) -> Result<Header, Unreadable> {
         self.line()?;
-        let (mut factors, mut to_rec709) = ([1.0; 3], matrix_of_file(None, None));
+        let (mut factors, mut to_rec709) = ([1.0; 3], file_to_rec709(None, None));
         loop {
             let line = self.line()?;
             match line.split_once('=') {
@@ -90,7 +90,7 @@ impl RadianceReader<'_> {
                 }
                 Some(("PRIMARIES", words)) => {
                     to_rec709 = primaries(words)
-                        .map_or(Err("its primaries are not known".into()), |found| matrix_of_file(None, Some(found)));
+                        .map_or(Err("its primaries are not known".into()), |found| file_to_rec709(None, Some(found)));
                 }
                 _ if line.is_empty() => break,
                 _ => (),
@@ -108,7 +108,7 @@ impl RadianceReader<'_> {
 
     fn fill(&mut self, texels: &mut [[u8; 4]]) -> Result<(), Unreadable> {
         match *self.rest {
-            [2, 2, high @ 0..128, low, ref rest @ ..] if PACKED.contains(&texels.len()) => {
+            [2, 2, high @ 0..128, low, ref rest @ ..] if PACKED_WIDTHS.contains(&texels.len()) => {
                 self.rest = rest;
                 if texels.len() != usize::from(u16::from_be_bytes([high, low])) {
                     return Err(Unreadable::Row(self.row));
@@ -125,12 +125,12 @@ impl RadianceReader<'_> {
         while !rest.is_empty() {
             let [count] = self.take()?;
             let length = usize::from(if count > 128 { count - 128 } else { count });
-            let (some, others) = rest.split_at_mut_checked(length).ok_or(Unreadable::Row(self.row))?;
+            let (run, others) = rest.split_at_mut_checked(length).ok_or(Unreadable::Row(self.row))?;
             if count > 128 {
                 let [byte] = self.take()?;
-                some.iter_mut().for_each(|texel| texel[channel] = byte);
+                run.iter_mut().for_each(|texel| texel[channel] = byte);
             } else {
-                some.iter_mut().try_for_each(|texel| self.take().map(|[byte]| texel[channel] = byte))?;
+                run.iter_mut().try_for_each(|texel| self.take().map(|[byte]| texel[channel] = byte))?;
             }
             rest = others;
         }

@@ -5,24 +5,24 @@ use crate::spectrum::Matrix;
 
 /// An image of whole numbers, in rows from the top. Each texel is a gray, or red, green and blue, optionally followed
 /// by alpha.
-pub(in crate::scene) struct Whole {
+pub(in crate::scene) struct IntegerImage {
     pub(in crate::scene) width: usize,
     /// Numbers per texel, 1 to 4.
     pub(in crate::scene) channels: usize,
     /// What the file says about its colors, if they are not sRGB.
     pub(in crate::scene) not_srgb: Option<String>,
     /// Whether the file says that it has to be turned or mirrored to be upright.
-    pub(in crate::scene) is_turned: bool,
-    pub(in crate::scene) steps: Steps,
+    pub(in crate::scene) is_rotated: bool,
+    pub(in crate::scene) steps: IntegerTexels,
 }
 
 /// Numbers of 8 or 16 bits. The largest one means 1.
-pub(in crate::scene) enum Steps {
+pub(in crate::scene) enum IntegerTexels {
     Bytes(Vec<u8>),
     Words(Vec<u16>),
 }
 
-impl Whole {
+impl IntegerImage {
     /// Returns whether the last number of a texel is alpha.
     pub(in crate::scene) fn has_alpha(&self) -> bool {
         self.channels.is_multiple_of(2)
@@ -31,7 +31,7 @@ impl Whole {
 
 /// An image of floating-point numbers, in rows from the top. Each texel is red, green and blue, or a gray, optionally
 /// followed by alpha.
-pub(in crate::scene) struct Floats {
+pub(in crate::scene) struct FloatImage {
     pub(in crate::scene) width: usize,
     /// Numbers per texel, 1 to 4.
     pub(in crate::scene) channels: usize,
@@ -44,7 +44,7 @@ pub(in crate::scene) struct Floats {
     pub(in crate::scene) numbers: Vec<f32>,
 }
 
-impl Floats {
+impl FloatImage {
     /// Sets a number of a texel, if that texel exists.
     pub(super) fn put(&mut self, x: usize, y: usize, number: usize, value: f32) {
         let at = self.channels * (y * self.width + x) + number;
@@ -107,8 +107,8 @@ impl Unreadable {
 
 /// Refuses images with no texels or too many, and sizes that take more `bytes` than the file can hold.
 pub(super) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Result<(), Unreadable> {
-    if let Some(said) = film::too_large(width, height, film::MOST_TEXELS) {
-        return Err(Unreadable::Large(said));
+    if let Some(reason) = film::too_large(width, height, film::MOST_TEXELS) {
+        return Err(Unreadable::Large(reason));
     }
     film::fits(width, height, bytes, file).map_err(Unreadable::Unfit)
 }

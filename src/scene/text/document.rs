@@ -23,7 +23,7 @@ impl<'d> Document<'d> {
     }
 
     /// Records a mistake. Reading continues, so that all mistakes are reported together.
-    pub(in crate::scene) fn tell(&self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
+    pub(in crate::scene) fn report(&self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
         // Names in a scene may contain anything, even a line break.
         let one_line = |text: String| text.replace(char::is_control, " ");
         let mistake = Mistake { span, message: one_line(message.into()), help: help.map(one_line) };
@@ -31,7 +31,7 @@ impl<'d> Document<'d> {
     }
 
     /// Returns the number of mistakes so far.
-    pub(in crate::scene) fn told(&self) -> usize {
+    pub(in crate::scene) fn reported(&self) -> usize {
         self.mistakes.borrow().len()
     }
 
@@ -50,33 +50,36 @@ impl<'d> Document<'d> {
     pub(in crate::scene) fn paths(&self, places: impl Iterator<Item = Range<usize>>) -> HashMap<Range<usize>, String> {
         let mut paths: HashMap<_, _> = places.map(|span| (span, String::new())).collect();
         if !paths.is_empty() {
-            look_into(self.root, "", &mut paths);
+            collect_table_paths(self.root, "", &mut paths);
         }
         paths
     }
 }
 
-fn look_into(table: &DeTable, path: &str, paths: &mut HashMap<Range<usize>, String>) {
+fn collect_table_paths(table: &DeTable, path: &str, paths: &mut HashMap<Range<usize>, String>) {
     for (key, value) in table {
         let dot = if path.is_empty() { "" } else { "." };
         let path = format!("{path}{dot}{}", key.get_ref());
-        note(key.span(), &path, paths);
-        look_at(value, &path, paths);
+        record_path(key.span(), &path, paths);
+        collect_paths(value, &path, paths);
     }
 }
 
-fn look_at(value: &Node, path: &str, paths: &mut HashMap<Range<usize>, String>) {
-    note(value.span(), path, paths);
+fn collect_paths(value: &Node, path: &str, paths: &mut HashMap<Range<usize>, String>) {
+    record_path(value.span(), path, paths);
     match value.get_ref() {
-        DeValue::Table(table) => look_into(table, path, paths),
+        DeValue::Table(table) => collect_table_paths(table, path, paths),
         DeValue::Array(entries) => {
-            entries.iter().enumerate().for_each(|(number, entry)| look_at(entry, &format!("{path}[{number}]"), paths));
+            entries
+                .iter()
+                .enumerate()
+                .for_each(|(number, entry)| collect_paths(entry, &format!("{path}[{number}]"), paths));
         }
         _ => {}
     }
 }
 
 /// Records the first path to a place that is looked for.
-fn note(span: Range<usize>, path: &str, paths: &mut HashMap<Range<usize>, String>) {
+fn record_path(span: Range<usize>, path: &str, paths: &mut HashMap<Range<usize>, String>) {
     paths.entry(span).and_modify(|found| found.push_str(if found.is_empty() { path } else { "" }));
 }

@@ -5,11 +5,11 @@ use std::path::Path;
 use toml::de::{DeArray, DeValue};
 
 use super::named_file::{IMAGES, TABLES};
-use crate::error::ends_in;
-use crate::scene::web_color::{of_bytes, of_srgb, web_color};
+use crate::error::has_extension;
+use crate::scene::web_color::{bytes_to_linear, srgb_to_linear, web_color};
 
 /// Names here, each with its names in other renderers. If several of the names here are known, the first is meant.
-const ELSEWHERE: [(&str, &[&str]); 55] = [
+const ALIASES: [(&str, &[&str]); 55] = [
     ("index", &["ior", "eta", "int_ior"]),
     ("reflectance", &["albedo", "color", "base_color", "reflection", "reflectivity"]),
     ("rgb", &["color"]),
@@ -71,7 +71,7 @@ const ELSEWHERE: [(&str, &[&str]); 55] = [
 const IN_OTHER_WORDS: &str = include_str!("in_other_words.txt");
 
 /// Returns what the table says about a word beside keys for which `is_beside` holds.
-fn instead(word: &str, is_beside: impl Fn(&str) -> bool) -> Option<&'static str> {
+fn advice_on(word: &str, is_beside: impl Fn(&str) -> bool) -> Option<&'static str> {
     IN_OTHER_WORDS.lines().find_map(|line| {
         let (words, rest) = line.split_once(" | ")?;
         let (beside, help) = rest.split_once(" | ")?;
@@ -81,19 +81,19 @@ fn instead(word: &str, is_beside: impl Fn(&str) -> bool) -> Option<&'static str>
 }
 
 /// Returns the names here for a word of other renderers.
-pub(super) fn called_here(word: &str) -> impl Iterator<Item = &'static str> {
-    ELSEWHERE.iter().filter(move |(_, words)| words.contains(&word)).map(|(here, _)| *here)
+pub(super) fn names_here(word: &str) -> impl Iterator<Item = &'static str> {
+    ALIASES.iter().filter(move |(_, words)| words.contains(&word)).map(|(here, _)| *here)
 }
 
 /// Kinds of materials, each with a key of its own. A word of other renderers beside a kind is explained as if it stood
 /// inside.
-const OF_KINDS: [(&str, &str); 4] =
+const KIND_KEYS: [(&str, &str); 4] =
     [("diffuse", "fluorescence"), ("mirror", "reflectance"), ("conductor", "metal"), ("dielectric", "priority")];
 
 /// Returns where a key belongs that stands beside a kind of material, if it does not belong inside.
 pub(super) fn outside_of_material(kind: &str, word: &str) -> Option<&'static str> {
-    let own = OF_KINDS.iter().find(|(known, _)| *known == kind).map(|(_, own)| *own);
-    instead(word, |key| key == "*" || Some(key) == own)
+    let own = KIND_KEYS.iter().find(|(known, _)| *known == kind).map(|(_, own)| *own);
+    advice_on(word, |key| key == "*" || Some(key) == own)
 }
 
 /// Sections whose keys people write elsewhere: a key that only this section has, and the keys that are misplaced.
@@ -112,29 +112,29 @@ const MISTAKEN_SECTIONS: [(&str, &str, &[&str]); 3] = [
 ];
 
 /// Keys of spectra that may be an image, and keys of lights.
-const OF_IMAGES: [&str; 2] = ["reflectance", "radiance"];
-const OF_LIGHTS: [&str; 3] = ["radiance", "irradiance", "intensity"];
-const SPECTRA: [&str; 4] = ["reflectance", "radiance", "irradiance", "intensity"];
+const IMAGE_KEYS: [&str; 2] = ["reflectance", "radiance"];
+const LIGHT_KEYS: [&str; 3] = ["radiance", "irradiance", "intensity"];
+const SPECTRUM_KEYS: [&str; 4] = ["reflectance", "radiance", "irradiance", "intensity"];
 
 /// Returns what to do about a word that stands for no known name, if it is clear what it means.
 pub(super) fn in_other_words(word: &str, known: &[&str]) -> Option<String> {
-    let of_spectrum = || {
+    let spectrum_help = || {
         let word = match word {
             "texture" | "map" => "image",
             "temperature" | "kelvin" => "blackbody",
             other => other,
         };
         let keys: &[&str] = match word {
-            "image" => &OF_IMAGES,
-            "rgb" | "samples" => &SPECTRA,
-            "blackbody" | "illuminant" => &OF_LIGHTS,
+            "image" => &IMAGE_KEYS,
+            "rgb" | "samples" => &SPECTRUM_KEYS,
+            "blackbody" | "illuminant" => &LIGHT_KEYS,
             _ => &[],
         };
         let key = keys.iter().find(|key| known.contains(key))?;
         Some(format!("write {key} = {{ {word} = .. }}"))
     };
-    let help = instead(word, |key| known.contains(&key)).map(str::to_owned);
-    help.or_else(of_spectrum).or_else(|| in_another_section(word, known))
+    let help = advice_on(word, |key| known.contains(&key)).map(str::to_owned);
+    help.or_else(spectrum_help).or_else(|| in_another_section(word, known))
 }
 
 /// Returns the section that a key belongs in, if another section, or the file outside of all sections, does not know
@@ -142,16 +142,17 @@ pub(super) fn in_other_words(word: &str, known: &[&str]) -> Option<String> {
 fn in_another_section(word: &str, known: &[&str]) -> Option<String> {
     let is_mistakable =
         MISTAKEN_SECTIONS.iter().any(|(section, own, _)| known.contains(own) || known.contains(section));
-    let has_it = |own: &str, keys: &[&str]| !known.contains(&own) && (own == word || keys.contains(&word));
-    let (section, _, keys) = MISTAKEN_SECTIONS.iter().find(|(_, own, keys)| is_mistakable && has_it(own, keys))?;
-    let here = called_here(word).find(|here| keys.contains(here)).unwrap_or(word);
+    let belongs_there = |own: &str, keys: &[&str]| !known.contains(&own) && (own == word || keys.contains(&word));
+    let (section, _, keys) =
+        MISTAKEN_SECTIONS.iter().find(|(_, own, keys)| is_mistakable && belongs_there(own, keys))?;
+    let here = names_here(word).find(|here| keys.contains(here)).unwrap_or(word);
     Some(format!("write {here} in [{section}]"))
 }
 
 /// Returns how to write a key of other programs that is recognized by its value.
-pub(super) fn value_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String> {
-    let of_file = || file_elsewhere(word, value.as_str()?, known);
-    color_elsewhere(word, value, known).or_else(of_file).or_else(|| entry_elsewhere(word, value, known))
+pub(super) fn value_help(word: &str, value: &DeValue, known: &[&str]) -> Option<String> {
+    let file_help = || image_or_table_help(word, value.as_str()?, known);
+    color_help(word, value, known).or_else(file_help).or_else(|| entry_help(word, value, known))
 }
 
 /// Lists of entries, each with one of the keys of an entry, and with keys of which an entry has exactly one.
@@ -159,7 +160,7 @@ const ENTRIES: [(&str, &str, &[&str]); 2] =
     [("object", "instances", &["shape"]), ("light", "environment", &["environment", "point", "spot", "sun"])];
 
 /// Returns how to write an object or a light that is written as a table under its name, as materials are.
-fn entry_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String> {
+fn entry_help(word: &str, value: &DeValue, known: &[&str]) -> Option<String> {
     let table = value.as_table()?;
     let is_meant = |(_, own, keys): &&(&str, &str, &[&str])| {
         known.contains(own) && keys.iter().any(|key| table.contains_key(*key))
@@ -169,10 +170,11 @@ fn entry_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String
 }
 
 /// Returns how to write the file of an image or of a table that a spectrum is made of.
-fn file_elsewhere(word: &str, file: &str, known: &[&str]) -> Option<String> {
+fn image_or_table_help(word: &str, file: &str, known: &[&str]) -> Option<String> {
     let is_file = matches!(word, "file" | "filename" | "path" | "image" | "texture" | "map");
-    let kinds: [(&str, &[&str], &[&str]); 2] = [("image", IMAGES, &OF_IMAGES), ("file", TABLES, &SPECTRA)];
-    let (kind, _, keys) = kinds.into_iter().find(|(_, endings, _)| is_file && ends_in(Path::new(file), endings))?;
+    let kinds: [(&str, &[&str], &[&str]); 2] = [("image", IMAGES, &IMAGE_KEYS), ("file", TABLES, &SPECTRUM_KEYS)];
+    let (kind, _, keys) =
+        kinds.into_iter().find(|(_, endings, _)| is_file && has_extension(Path::new(file), endings))?;
     let key = || keys.iter().find(|key| known.contains(key));
     match known.contains(&kind) {
         true => Some(format!("write {kind} = {file:?}")),
@@ -181,7 +183,7 @@ fn file_elsewhere(word: &str, file: &str, known: &[&str]) -> Option<String> {
 }
 
 /// Returns how to write a color whose key says that it is sRGB, or is a key of other programs.
-fn color_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String> {
+fn color_help(word: &str, value: &DeValue, known: &[&str]) -> Option<String> {
     let word = word.to_lowercase();
     if !known.contains(&"rgb") || !COLORS.contains(&&*word) {
         return None;
@@ -191,18 +193,18 @@ fn color_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String
         DeValue::Float(float) => float.as_str().parse().ok(),
         _ => None,
     };
-    let listed = |list: &DeArray| {
+    let from_list = |list: &DeArray| {
         let color = list.iter().map(|node| number(node.get_ref())).collect::<Option<Vec<f64>>>()?;
         let color: [f64; 3] = color.try_into().ok()?;
         if matches!(&*word, "hsv" | "hsl" | "lab" | "xyz" | "xyy") {
             return None;
         }
         let is_srgb = word == "srgb" && color.iter().all(|x| (0.0..=1.0).contains(x));
-        of_bytes(color).or_else(|| is_srgb.then(|| of_srgb(color)))
+        bytes_to_linear(color).or_else(|| is_srgb.then(|| srgb_to_linear(color)))
     };
     let color = match value {
         DeValue::String(text) => web_color(text).or_else(|| web_color(&format!("#{text}"))),
-        DeValue::Array(list) => listed(list),
+        DeValue::Array(list) => from_list(list),
         _ => None,
     };
     let is_other = !matches!(&*word, "color" | "rgba");

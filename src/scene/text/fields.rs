@@ -5,9 +5,9 @@ use std::ops::Range;
 use toml::de::DeTable;
 
 use super::document::Document;
-use super::elsewhere::{outside_of_material, value_elsewhere};
+use super::elsewhere::{outside_of_material, value_help};
 use super::include::INCLUDE;
-use super::suggest::{TABLE, meant, suggested_key, suggestion};
+use super::suggest::{TABLE, meant_name, suggested_key, suggestion};
 use super::value::Value;
 use crate::error::nearest;
 
@@ -18,18 +18,18 @@ pub(in crate::scene) struct Fields<'d> {
     span: Range<usize>,
     known: Vec<&'static str>,
     /// Known keys that make no sense in this place, and are not suggested.
-    unfit: Vec<&'static str>,
+    excluded_hints: Vec<&'static str>,
     /// Required keys that are missing, and what to do.
     missing: Vec<(&'static str, Option<String>)>,
     /// Keys that have been reported, but not as unknown ones.
-    told: Vec<&'static str>,
+    reported: Vec<&'static str>,
 }
 
 impl<'d> Fields<'d> {
     /// Reads a table. Returns none unless it has all the keys that it needs and no others. `read` must request every
     /// possible key before it gives up over one.
     pub(in crate::scene) fn read<T>(value: Value<'d>, read: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
-        let Some(table) = value.node().as_table() else { return value.wanted(TABLE) };
+        let Some(table) = value.node().as_table() else { return value.expected(TABLE) };
         Self::of(value.document, table, value.span(), read)
     }
 
@@ -47,15 +47,15 @@ impl<'d> Fields<'d> {
         span: Range<usize>,
         read: impl FnOnce(&mut Self) -> Option<T>,
     ) -> Option<T> {
-        let (known, unfit, missing, told) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let mut fields = Self { document, table, span, known, unfit, missing, told };
+        let (known, excluded_hints, missing, reported) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut fields = Self { document, table, span, known, excluded_hints, missing, reported };
         let read = read(&mut fields);
-        let are_right = fields.are_right();
-        read.filter(|_| are_right)
+        let is_valid = fields.check_keys();
+        read.filter(|_| is_valid)
     }
 
     /// Returns whether the table has only keys that were requested, and all that it needs. Reports the others.
-    fn are_right(&self) -> bool {
+    fn check_keys(&self) -> bool {
         let (unknown, known) = (self.unknown(), self.hints());
         for (span, word) in &unknown {
             let (message, help) = match *word {
@@ -65,40 +65,41 @@ impl<'d> Fields<'d> {
                 ),
                 word => {
                     let value = self.table.get(word);
-                    let known_by_value = value.and_then(|node| value_elsewhere(word, node.get_ref(), &known));
+                    let known_by_value = value.and_then(|node| value_help(word, node.get_ref(), &known));
                     let help = known_by_value.unwrap_or_else(|| suggested_key(word, &known, self.table));
                     (format!("unknown key `{word}`"), help)
                 }
             };
-            self.document.tell(span.clone(), message, Some(help));
+            self.document.report(span.clone(), message, Some(help));
         }
         // A key that makes no sense may stand for the one that is missing.
-        let is_obscure = !self.told.is_empty() || unknown.iter().any(|(_, word)| meant(word, word, &known).is_none());
-        for (key, help) in self.missing.iter().filter(|(key, _)| !is_obscure && !self.is_misspelt(key)) {
-            self.document.tell(self.span.clone(), format!("`{key}` is missing"), help.clone());
+        let is_obscure =
+            !self.reported.is_empty() || unknown.iter().any(|(_, word)| meant_name(word, word, &known).is_none());
+        for (key, help) in self.missing.iter().filter(|(key, _)| !is_obscure && !self.is_misspelled(key)) {
+            self.document.report(self.span.clone(), format!("`{key}` is missing"), help.clone());
         }
-        unknown.is_empty() && self.missing.is_empty() && self.told.is_empty()
+        unknown.is_empty() && self.missing.is_empty() && self.reported.is_empty()
     }
 
     /// Returns whether an unknown key is most likely a misspelling of this one, which is then not missing.
-    pub(in crate::scene) fn is_misspelt(&self, key: &str) -> bool {
+    pub(in crate::scene) fn is_misspelled(&self, key: &str) -> bool {
         let known = self.hints();
-        self.unknown().iter().any(|(_, word)| meant(word, word, &known) == Some(key))
+        self.unknown().iter().any(|(_, word)| meant_name(word, word, &known) == Some(key))
     }
 
     /// Returns the keys that may be suggested in place of another one.
     fn hints(&self) -> Vec<&'static str> {
-        self.known.iter().copied().filter(|key| !self.unfit.contains(key)).collect()
+        self.known.iter().copied().filter(|key| !self.excluded_hints.contains(key)).collect()
     }
 
     fn unknown(&self) -> Vec<(Range<usize>, &'d str)> {
         let keys = self.table.keys().map(|key| (key.span(), key.get_ref().as_ref()));
-        keys.filter(|(_, key)| !self.known.contains(key) && !self.told.contains(key)).collect()
+        keys.filter(|(_, key)| !self.known.contains(key) && !self.reported.contains(key)).collect()
     }
 
     /// Returns whether there are keys that nothing has requested so far.
     pub(in crate::scene) fn has_unknown(&self) -> bool {
-        !self.told.is_empty() || !self.unknown().is_empty()
+        !self.reported.is_empty() || !self.unknown().is_empty()
     }
 
     /// Returns the value of an optional key.
@@ -136,32 +137,32 @@ impl<'d> Fields<'d> {
     ) -> Option<T> {
         match self.get(key) {
             Some(value) => read(value),
-            None => self.lack(key, None),
+            None => self.report_missing(key, None),
         }
     }
 
     /// Reports that a key is missing, unless it is misspelled. For keys that only some tables of a kind need.
-    pub(in crate::scene) fn lack<T>(&mut self, key: &'static str, help: Option<&str>) -> Option<T> {
+    pub(in crate::scene) fn report_missing<T>(&mut self, key: &'static str, help: Option<&str>) -> Option<T> {
         self.missing.push((key, help.map(str::to_owned)));
         None
     }
 
     /// Reports that the whole table is wrong.
     pub(in crate::scene) fn refuse<T>(&self, message: impl Into<String>, help: Option<&str>) -> Option<T> {
-        self.document.tell(self.span.clone(), message, help.map(str::to_owned));
+        self.document.report(self.span.clone(), message, help.map(str::to_owned));
         None
     }
 
     /// Excludes keys that make no sense in this place from suggestions.
-    pub(in crate::scene) fn do_not_hint_at(&mut self, keys: impl Iterator<Item = &'static str>) {
-        self.unfit.extend(keys);
+    pub(in crate::scene) fn exclude_hints(&mut self, keys: impl Iterator<Item = &'static str>) {
+        self.excluded_hints.extend(keys);
     }
 
     /// Reports that a key, if it is there, belongs elsewhere.
-    pub(in crate::scene) fn stray(&mut self, key: &'static str, message: impl Into<String>, help: String) {
+    pub(in crate::scene) fn refuse_misplaced(&mut self, key: &'static str, message: impl Into<String>, help: String) {
         if let Some((found, _)) = self.table.get_key_value(key) {
-            self.document.tell(found.span(), message, Some(help));
-            self.told.push(key);
+            self.document.report(found.span(), message, Some(help));
+            self.reported.push(key);
         }
     }
 }
@@ -174,9 +175,9 @@ pub(in crate::scene) struct Choice<R: 'static> {
     pub(in crate::scene) word: &'static str,
     pub(in crate::scene) example: &'static str,
     /// What to do about a second kind.
-    pub(in crate::scene) apart: &'static str,
+    pub(in crate::scene) second_kind_help: &'static str,
     /// Keys that belong beside the table and not into it.
-    pub(in crate::scene) beside: &'static [&'static str],
+    pub(in crate::scene) outside_keys: &'static [&'static str],
     /// The kinds, and their readers.
     pub(in crate::scene) kinds: &'static [(&'static str, R)],
 }
@@ -203,14 +204,14 @@ impl<R: Copy> Choice<R> {
     }
 
     /// Returns the kind that a key such as `type` names.
-    fn tagged<'d>(&self, tag: Value<'d>) -> Option<&'d str> {
+    fn tagged_kind<'d>(&self, tag: Value<'d>) -> Option<&'d str> {
         let named = || tag.node().as_str().filter(|word| self.knows(word));
         matches!(tag.key(), "type" | "kind").then(named).flatten()
     }
 
     /// Returns whether a key belongs beside the table, and reports it if so.
-    fn is_beside(&self, stray: Value) -> bool {
-        let is_beside = self.beside.contains(&stray.key());
+    fn report_if_beside(&self, stray: Value) -> bool {
+        let is_beside = self.outside_keys.contains(&stray.key());
         if is_beside {
             let help = format!("write it beside `{0}`: above a line [object.{0}], or outside its braces", self.word);
             stray.refuse_key::<()>(format!("`{}` is not part of {}", stray.key(), self.name), Some(help));
@@ -219,7 +220,7 @@ impl<R: Copy> Choice<R> {
     }
 
     /// Returns whether a key beside a kind resembles no kind, and reports it if so: it may belong inside the kind.
-    fn is_part_of(&self, kind: &str, stray: Value) -> bool {
+    fn report_if_part(&self, kind: &str, stray: Value) -> bool {
         let word = stray.key();
         let is_part = !self.knows(word) && nearest(word, self.kinds.iter().map(|kind| kind.0)).is_none();
         if is_part {
@@ -239,16 +240,16 @@ impl<R: Copy> Choice<R> {
         };
         let mut kinds: Vec<_> = table.iter().map(|(key, node)| Value::new(value.document, key, node)).collect();
         kinds.sort_by_key(|kind| kind.key_span().start);
-        if let Some((tag, kind)) = kinds.iter().find_map(|tag| Some((tag, self.tagged(*tag)?))) {
+        if let Some((tag, kind)) = kinds.iter().find_map(|tag| Some((tag, self.tagged_kind(*tag)?))) {
             let help = format!("write {kind} = {{ .. }}, with its keys inside the braces");
             return tag.refuse_key(format!("the kind of {} is itself a key", self.name), Some(help));
         }
-        kinds.retain(|kind| !self.is_beside(*kind));
+        kinds.retain(|kind| !self.report_if_beside(*kind));
         if let [kind] = kinds.iter().filter(|kind| self.knows(kind.key())).copied().collect::<Vec<_>>()[..] {
-            kinds.retain(|other| !self.is_part_of(kind.key(), *other));
+            kinds.retain(|other| !self.report_if_part(kind.key(), *other));
         }
         if let [_, second, ..] = kinds.as_slice() {
-            second.refuse_key::<()>(format!("{} has exactly one kind", self.name), Some(self.apart.into()));
+            second.refuse_key::<()>(format!("{} has exactly one kind", self.name), Some(self.second_kind_help.into()));
         }
         match kinds.first() {
             None => value.advise(format!("{} needs a kind", self.name), example()),

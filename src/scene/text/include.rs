@@ -8,22 +8,22 @@ use toml::de::{DeTable, DeValue};
 use super::mistake::Mistake;
 use super::named_file::{Fault, FileKind, read_named};
 use super::texts::Texts;
-use super::tree::{Node, parsed, word};
+use super::tree::{Node, key_text, parse_toml};
 use super::utf8::utf8;
 use crate::scene::foreign::foreign;
 
 /// The key that lists such files.
 pub(in crate::scene) const INCLUDE: &str = "include";
 /// Maximum number of bytes of a scene, and of a file that it includes. A device may never end.
-pub(in crate::scene) const MOST_BYTES: u64 = 1 << 30;
-const SCENE: FileKind =
-    FileKind { nameless: "a file to include needs a name", most_bytes: MOST_BYTES, endings: &["toml"] };
+pub(in crate::scene) const MAX_BYTES: u64 = 1 << 30;
+const SCENE_FILE: FileKind =
+    FileKind { empty_name_message: "a file to include needs a name", max_bytes: MAX_BYTES, endings: &["toml"] };
 /// Maximum depth of files within one another: far less than would exhaust the stack.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// The texts of a scene, and the mistakes found in them so far.
 #[derive(Default)]
-pub(in crate::scene) struct Included {
+pub(in crate::scene) struct IncludedTexts {
     pub(in crate::scene) texts: Texts,
     /// The place of each file in the texts.
     pub(in crate::scene) parts: Vec<Range<usize>>,
@@ -31,15 +31,15 @@ pub(in crate::scene) struct Included {
     /// All files, each under one name only.
     pub(in crate::scene) files: Vec<PathBuf>,
     /// The files that are being read, the outermost first.
-    within: Vec<PathBuf>,
+    open_files: Vec<PathBuf>,
 }
 
-impl Included {
+impl IncludedTexts {
     /// Collects a text and those of all files that it includes, each once, in the order in which they are first named.
     /// A text that is not a file still has a path, which the names of files are relative to.
     pub(in crate::scene) fn of(path: &Path, text: &str, is_file: bool) -> Self {
-        let file: Vec<PathBuf> = is_file.then(|| real(path)).into_iter().collect();
-        let mut found = Self { files: file.clone(), within: file, ..Self::default() };
+        let file: Vec<PathBuf> = is_file.then(|| canonical(path)).into_iter().collect();
+        let mut found = Self { files: file.clone(), open_files: file, ..Self::default() };
         found.add(path, text);
         found
     }
@@ -50,7 +50,7 @@ impl Included {
         self.parts.push(span.clone());
         // Most texts include nothing, and are parsed only once. A key may be written with escapes.
         if text.contains(INCLUDE) || text.contains('\\') {
-            match parsed(text, span.start) {
+            match parse_toml(text, span.start) {
                 Ok(table) => table.get(INCLUDE).into_iter().for_each(|names| self.add_all(names, folder)),
                 Err(mistake) => self.mistakes.push(mistake),
             }
@@ -79,41 +79,41 @@ impl Included {
 
     fn add_named(&mut self, name: &str, folder: &Path) -> Result<(), Fault> {
         let path = folder.join(name);
-        let file = real(&path);
-        if self.within.contains(&file) {
+        let file = canonical(&path);
+        if self.open_files.contains(&file) {
             let message = format!("{name} includes itself via this file");
             return Err(Fault::new(message, "put what both need in a file of its own"));
         }
         if self.files.contains(&file) {
             return Ok(());
         }
-        if self.within.len() >= DEEPEST {
-            return Err(Fault { message: format!("included files are nested more than {DEEPEST} deep"), help: None });
+        if self.open_files.len() >= MAX_DEPTH {
+            return Err(Fault { message: format!("included files are nested more than {MAX_DEPTH} deep"), help: None });
         }
-        let text = utf8(read_named(folder, name, &SCENE)?, name, "an included file is TOML, like a scene");
-        let is_toml = || text.as_ref().is_ok_and(|text| parsed(text, 0).is_ok());
-        if let Some((what, help)) = foreign(&path, name).filter(|_| !is_toml()) {
-            return Err(Fault::new(format!("{name} is {what}, not a part of a scene in TOML"), help));
+        let text = utf8(read_named(folder, name, &SCENE_FILE)?, name, "an included file is TOML, like a scene");
+        let is_toml = || text.as_ref().is_ok_and(|text| parse_toml(text, 0).is_ok());
+        if let Some((kind, help)) = foreign(&path, name).filter(|_| !is_toml()) {
+            return Err(Fault::new(format!("{name} is {kind}, not a part of a scene in TOML"), help));
         }
         let text = text?;
         self.files.push(file.clone());
-        self.within.push(file);
+        self.open_files.push(file);
         self.add(&path, &text);
-        self.within.pop();
+        self.open_files.pop();
         Ok(())
     }
 }
 
 /// Returns the canonical name of a file, without links.
-fn real(path: &Path) -> PathBuf {
+fn canonical(path: &Path) -> PathBuf {
     std::fs::canonicalize(path).unwrap_or(path.to_owned())
 }
 
 /// Merges the content of all files: joins their lists, and combines the keys of their tables.
-pub(in crate::scene) fn merged<'d>(texts: &'d Texts, files: &[Range<usize>]) -> Result<DeTable<'d>, Vec<Mistake>> {
+pub(in crate::scene) fn merge_files<'d>(texts: &'d Texts, files: &[Range<usize>]) -> Result<DeTable<'d>, Vec<Mistake>> {
     let (mut whole, mut mistakes) = (DeTable::new(), Vec::new());
     for part in files {
-        match parsed(&texts.whole[part.clone()], part.start) {
+        match parse_toml(&texts.whole[part.clone()], part.start) {
             Ok(mut table) => {
                 table.remove(INCLUDE);
                 merge(&mut whole, table, texts, &mut mistakes);
@@ -126,7 +126,7 @@ pub(in crate::scene) fn merged<'d>(texts: &'d Texts, files: &[Range<usize>]) -> 
 
 fn merge<'d>(whole: &mut DeTable<'d>, table: DeTable<'d>, texts: &Texts, mistakes: &mut Vec<Mistake>) {
     for (section, value) in table {
-        let name: &str = word(&section);
+        let name: &str = key_text(&section);
         let Some((first, found)) = whole.remove_entry(name) else {
             whole.insert(section, value);
             continue;
@@ -138,10 +138,11 @@ fn merge<'d>(whole: &mut DeTable<'d>, table: DeTable<'d>, texts: &Texts, mistake
             }
             (DeValue::Table(mut keys), DeValue::Table(more)) => {
                 for (key, value) in more {
-                    match keys.get_key_value(word(&key)) {
+                    match keys.get_key_value(key_text(&key)) {
                         Some((known, _)) => {
-                            let message = format!("`{name}.{}` is given twice", word(&key));
-                            let help = format!("it is also given {}: keep one of them", texts.placed(known.span()));
+                            let message = format!("`{name}.{}` is given twice", key_text(&key));
+                            let help =
+                                format!("it is also given {}: keep one of them", texts.place_phrase(known.span()));
                             mistakes.push(Mistake { span: key.span(), message, help: Some(help) });
                         }
                         None => drop(keys.insert(key, value)),
@@ -151,7 +152,7 @@ fn merge<'d>(whole: &mut DeTable<'d>, table: DeTable<'d>, texts: &Texts, mistake
             }
             (found, _) => {
                 let message = format!("`{name}` is given twice");
-                let help = format!("it is also given {}, in another form", texts.placed(first.span()));
+                let help = format!("it is also given {}, in another form", texts.place_phrase(first.span()));
                 mistakes.push(Mistake { span: section.span(), message, help: Some(help) });
                 found
             }

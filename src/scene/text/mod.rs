@@ -22,14 +22,14 @@ mod words;
 
 pub(super) use document::Document;
 pub(super) use fields::{Choice, Fields};
-pub(super) use include::{INCLUDE, Included, MOST_BYTES, merged};
+pub(super) use include::{INCLUDE, IncludedTexts, MAX_BYTES, merge_files};
 pub(super) use mistake::Mistake;
 pub(super) use named_file::{Fault, FileKind, IMAGES, TABLES};
 pub use rows::{Numbers, Rows};
 pub(super) use settings::set;
 pub(super) use texts::{LocatedBy, Texts};
-pub(super) use tree::parsed;
+pub(super) use tree::parse_toml;
 pub(super) use utf8::utf8;
 pub(super) use value::{Spanned, Value, above_0_to, at, exactly};
-pub(super) use variables::{SET, fill};
-pub(super) use words::{and_more, shown};
+pub(super) use variables::{SET, substitute_variables};
+pub(super) use words::{and_more, six_digits};

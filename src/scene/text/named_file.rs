@@ -12,8 +12,8 @@ pub(in crate::scene) const TABLES: &[&str] = &["csv", "txt", "tsv", "dat"];
 /// A kind of file that a scene names.
 pub(in crate::scene) struct FileKind {
     /// The message about an empty name.
-    pub(in crate::scene) nameless: &'static str,
-    pub(in crate::scene) most_bytes: u64,
+    pub(in crate::scene) empty_name_message: &'static str,
+    pub(in crate::scene) max_bytes: u64,
     /// Extensions that its name may have; any if there are none.
     pub(in crate::scene) endings: &'static [&'static str],
 }
@@ -36,8 +36,8 @@ pub(super) fn read_named(folder: &Path, file: &str, kind: &FileKind) -> Result<V
     let refuse = |message: String| Err(Fault { message, help: None });
     let path = folder.join(file);
     match std::fs::metadata(&path) {
-        Ok(found) if found.is_file() && found.len() > kind.most_bytes => {
-            return refuse(format!("{file} has {} bytes, more than {}", found.len(), kind.most_bytes));
+        Ok(found) if found.is_file() && found.len() > kind.max_bytes => {
+            return refuse(format!("{file} has {} bytes, more than {}", found.len(), kind.max_bytes));
         }
         // Reading a device may never end.
         Ok(found) if !found.is_file() && !found.is_dir() => return refuse(format!("{file} is a device, not a file")),
@@ -45,7 +45,7 @@ pub(super) fn read_named(folder: &Path, file: &str, kind: &FileKind) -> Result<V
     }
     match std::fs::read(&path) {
         Ok(bytes) => Ok(bytes),
-        Err(_) if file.is_empty() => refuse(kind.nameless.into()),
+        Err(_) if file.is_empty() => refuse(kind.empty_name_message.into()),
         Err(_) if path.is_dir() => refuse(format!("{file} is a folder")),
         Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
             Err(missing(folder, file, kind.endings))

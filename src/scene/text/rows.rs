@@ -29,7 +29,7 @@ impl Rows {
     }
 
     /// Returns the position of the rows that a text stands for, if it does.
-    pub(super) fn marked(text: &str) -> Option<usize> {
+    pub(super) fn marked_position(text: &str) -> Option<usize> {
         text.strip_prefix(MARK)?.parse().ok()
     }
 

@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::include::INCLUDE;
 use super::mistake::Mistake;
 use super::suggest::suggestion;
-use super::tree::{Key, Node, parsed, word};
+use super::tree::{Key, Node, key_text, parse_toml};
 use super::variables::{FRAME, SET};
 use crate::error::nearest;
 
@@ -27,19 +27,21 @@ pub(in crate::scene) fn set<'d>(
     start: usize,
     sections: &[&str],
 ) -> Result<(), Mistake> {
-    let Setting { mut path, value } = setting(text, start)?;
-    if let Some(key) = path.first().filter(|key| word(key) == INCLUDE) {
+    let Setting { mut path, value } = parse_setting(text, start)?;
+    if let Some(key) = path.first().filter(|key| key_text(key) == INCLUDE) {
         let help = Some("write it into the scene; a scene may come from standard input".into());
         return Err(Mistake { span: key.span(), message: "`include` cannot be set".into(), help });
     }
     if let [name] = path.as_slice() {
         let is_value = !value.get_ref().is_table() && !value.get_ref().is_array();
         match variables(root) {
-            variables if word(name) == FRAME || variables.is_some_and(|known| known.contains_key(word(name))) => {
+            variables
+                if key_text(name) == FRAME || variables.is_some_and(|known| known.contains_key(key_text(name))) =>
+            {
                 path.insert(0, Spanned::new(name.span(), SET.into()));
             }
-            variables if is_value && !root.contains_key(word(name)) && !sections.contains(&word(name)) => {
-                return Err(no_variable(name, &names(variables), sections));
+            variables if is_value && !root.contains_key(key_text(name)) && !sections.contains(&key_text(name)) => {
+                return Err(unknown_variable(name, &names(variables), sections));
             }
             _ => {}
         }
@@ -49,11 +51,11 @@ pub(in crate::scene) fn set<'d>(
     {
         let materials = root.get("material").and_then(|materials| materials.get_ref().as_table());
         let known = names(materials);
-        if !known.contains(&word(name)) {
-            let message = format!("there is no material named {:?}", word(name));
-            let help = match nearest(word(name), known) {
+        if !known.contains(&key_text(name)) {
+            let message = format!("there is no material named {:?}", key_text(name));
+            let help = match nearest(key_text(name), known) {
                 Some(near) => format!("did you mean {near:?}?"),
-                None => format!("a new material is set as a whole: material.{}={{ .. }}", word(name)),
+                None => format!("a new material is set as a whole: material.{}={{ .. }}", key_text(name)),
             };
             return Err(Mistake { span: name.span(), message, help: Some(help) });
         }
@@ -66,53 +68,54 @@ fn variables<'t, 'd>(root: &'t DeTable<'d>) -> Option<&'t DeTable<'d>> {
 }
 
 fn names<'t>(table: Option<&'t DeTable>) -> Vec<&'t str> {
-    table.into_iter().flat_map(DeTable::keys).map(word).collect()
+    table.into_iter().flat_map(DeTable::keys).map(key_text).collect()
 }
 
-fn no_variable(name: &Key, known: &[&str], sections: &[&str]) -> Mistake {
-    let word = word(name);
-    let help = match nearest(word, known.iter().chain(sections).copied()) {
+fn unknown_variable(name: &Key, known: &[&str], sections: &[&str]) -> Mistake {
+    let key_text = key_text(name);
+    let help = match nearest(key_text, known.iter().chain(sections).copied()) {
         Some(near) => format!("did you mean `{near}`?"),
         None if known.is_empty() => {
             "a scene defines its variables in [set]; other values have a path: film.width=320".into()
         }
         None => format!("known here: {}", known.join(", ")),
     };
-    Mistake { span: name.span(), message: format!("there is no variable `{word}`"), help: Some(help) }
+    Mistake { span: name.span(), message: format!("there is no variable `{key_text}`"), help: Some(help) }
 }
 
 /// Parses `KEY=VALUE`. A value that is not TOML is taken as a text.
-fn setting(text: &str, start: usize) -> Result<Setting<'_>, Mistake> {
+fn parse_setting(text: &str, start: usize) -> Result<Setting<'_>, Mistake> {
     let whole = start..start + text.len();
     let refuse = |message: &str| {
         let help = Some("for instance: film.width=320".into());
         Err(Mistake { span: whole.clone(), message: message.into(), help })
     };
-    let Some(equals) = equals(text) else { return refuse("a setting is a key, `=` and a value") };
-    if text[..equals].trim().is_empty() {
+    let Some(equals_position) = equals_position(text) else { return refuse("a setting is a key, `=` and a value") };
+    if text[..equals_position].trim().is_empty() {
         return refuse("a setting is a key, `=` and a value");
     }
-    let key = format!("{}=0", &text[..equals]);
+    let key = format!("{}=0", &text[..equals_position]);
     // Where the part begins that is parsed with its value: of words with spaces, only the last one is.
-    let (path, tail): (Option<Vec<Key>>, _) = match (parsed(&key, start), spaced(&text[..equals], start)) {
-        (Ok(table), _) => (path(&table).map(|path| path.into_iter().map(owned).collect()), 0),
-        (Err(_), Some(path)) => {
-            let last = path.len() - 1;
-            (Some(path), last)
-        }
-        (Err(_), None) => {
-            let message = format!("`{}` is not the path of a key", text[..equals].trim());
-            let help = Some("a path is words joined by dots, such as film.width".into());
-            return Err(Mistake { span: start..start + equals, message, help });
-        }
-    };
+    let (path, tail): (Option<Vec<Key>>, _) =
+        match (parse_toml(&key, start), split_at_dots(&text[..equals_position], start)) {
+            (Ok(table), _) => (path(&table).map(|path| path.into_iter().map(owned_key).collect()), 0),
+            (Err(_), Some(path)) => {
+                let last = path.len() - 1;
+                (Some(path), last)
+            }
+            (Err(_), None) => {
+                let message = format!("`{}` is not the path of a key", text[..equals_position].trim());
+                let help = Some("a path is words joined by dots, such as film.width".into());
+                return Err(Mistake { span: start..start + equals_position, message, help });
+            }
+        };
     let Some(path) = path else { return refuse("a setting is one key, `=` and its value") };
-    let (before, value) = text.split_at(equals + 1);
+    let (before, value) = text.split_at(equals_position + 1);
     let at = start + before.len() + (value.len() - value.trim_start().len());
     let value = value.trim();
     let from = if tail == 0 { start } else { path[tail].span().start };
-    match parsed(&text[from - start..], from) {
-        Ok(mut table) => match valued(&mut table, &path[tail..]) {
+    match parse_toml(&text[from - start..], from) {
+        Ok(mut table) => match take_value(&mut table, &path[tail..]) {
             Some(value) => Ok(Setting { path, value }),
             None => refuse("a setting is one key, `=` and its value"),
         },
@@ -124,29 +127,30 @@ fn setting(text: &str, start: usize) -> Result<Setting<'_>, Mistake> {
     }
 }
 
-fn owned<'k>(key: &Key) -> Key<'k> {
-    Spanned::new(key.span(), word(key).to_string().into())
+fn owned_key<'k>(key: &Key) -> Key<'k> {
+    Spanned::new(key.span(), key_text(key).to_string().into())
 }
 
 /// Splits a path at its dots, if names in it have spaces or other characters that TOML wants quotes for. Returns none
 /// if there are quotes, or if the last word, which is a key, needs them.
-fn spaced<'k>(path: &str, start: usize) -> Option<Vec<Key<'k>>> {
+fn split_at_dots<'k>(path: &str, start: usize) -> Option<Vec<Key<'k>>> {
     let (mut keys, mut next) = (Vec::new(), start);
     for part in path.split('.') {
-        let word = part.trim();
+        let key_text = part.trim();
         let at = next + (part.len() - part.trim_start().len());
-        keys.push(Spanned::new(at..at + word.len(), word.to_owned().into()));
+        keys.push(Spanned::new(at..at + key_text.len(), key_text.to_owned().into()));
         next += part.len() + 1;
     }
     let is_bare = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-';
-    let is_plain =
-        |key: &Key| !word(key).is_empty() && !word(key).contains(['"', '\'', '#', '[', ']', '{', '}', '\n', '\r']);
-    let last = keys.last().is_some_and(|key| word(key).chars().all(is_bare));
+    let is_plain = |key: &Key| {
+        !key_text(key).is_empty() && !key_text(key).contains(['"', '\'', '#', '[', ']', '{', '}', '\n', '\r'])
+    };
+    let last = keys.last().is_some_and(|key| key_text(key).chars().all(is_bare));
     (last && keys.iter().all(is_plain)).then_some(keys)
 }
 
 /// Returns the position of the `=` that ends a key, which may be quoted.
-fn equals(text: &str) -> Option<usize> {
+fn equals_position(text: &str) -> Option<usize> {
     let (mut quote, mut is_escaped) = (None, false);
     text.char_indices().find_map(|(at, letter)| {
         match (quote, letter) {
@@ -183,12 +187,12 @@ fn path<'t, 'd>(table: &'t DeTable<'d>) -> Option<Vec<&'t Key<'d>>> {
 }
 
 /// Returns the value at the end of a path, if there is nothing beside it.
-fn valued<'d>(table: &mut DeTable<'d>, path: &[Key]) -> Option<Node<'d>> {
+fn take_value<'d>(table: &mut DeTable<'d>, path: &[Key]) -> Option<Node<'d>> {
     let (key, rest) = path.split_first()?;
-    let mut value = Some(table.remove(word(key))?).filter(|_| table.is_empty())?;
+    let mut value = Some(table.remove(key_text(key))?).filter(|_| table.is_empty())?;
     match (value.get_mut(), rest) {
         (_, []) => Some(value),
-        (DeValue::Table(inner), rest) => valued(inner, rest),
+        (DeValue::Table(inner), rest) => take_value(inner, rest),
         _ => None,
     }
 }
@@ -197,12 +201,12 @@ fn put<'d>(table: &mut DeTable<'d>, path: &[Key<'d>], value: Node<'d>) -> Result
     let Some((key, rest)) = path.split_first() else { return Ok(()) };
     if rest.is_empty() {
         // The key is replaced as well, so that a mistake in the value is reported here.
-        table.remove(word(key));
+        table.remove(key_text(key));
         table.insert(key.clone(), value);
         return Ok(());
     }
-    let none = || Spanned::new(key.span(), DeValue::Table(DeTable::new()));
-    put_into(table.entry(key.clone()).or_insert_with(none), key, rest, value)
+    let empty_table = || Spanned::new(key.span(), DeValue::Table(DeTable::new()));
+    put_into(table.entry(key.clone()).or_insert_with(empty_table), key, rest, value)
 }
 
 /// Puts a value into the value of a key.
@@ -214,12 +218,12 @@ fn put_into<'d>(node: &mut Node<'d>, key: &Key, path: &[Key<'d>], value: Node<'d
     match node.get_mut() {
         DeValue::Table(table) => put(table, path, value),
         DeValue::Array(entries) => {
-            let number = position(word(key), entries, next)?;
+            let number = position(key_text(key), entries, next)?;
             put_into(&mut entries.as_mut()[number], next, rest, value)
         }
         _ => {
-            let message = format!("`{}` is not a table here, so it has no `{}`", word(key), word(next));
-            let help = format!("set `{}` itself", word(key));
+            let message = format!("`{}` is not a table here, so it has no `{}`", key_text(key), key_text(next));
+            let help = format!("set `{}` itself", key_text(key));
             Err(Mistake { span: next.span(), message, help: Some(help) })
         }
     }
@@ -227,21 +231,21 @@ fn put_into<'d>(node: &mut Node<'d>, key: &Key, path: &[Key<'d>], value: Node<'d
 
 /// Returns the index of the entry of a list that has this name or number. Numbers count from 1.
 fn position(list: &str, entries: &[Node], key: &Key) -> Result<usize, Mistake> {
-    let word: &str = word(key);
+    let key_text: &str = key_text(key);
     let names = entries.iter().map(|entry| entry.get_ref().as_table()?.get("name")?.get_ref().as_str());
     let names: Vec<Option<&str>> = names.collect();
-    let named: Vec<usize> = (0..names.len()).filter(|&number| names[number] == Some(word)).collect();
+    let named: Vec<usize> = (0..names.len()).filter(|&number| names[number] == Some(key_text)).collect();
     let refuse = |span: Range<usize>, message: String, help: String| Err(Mistake { span, message, help: Some(help) });
     match named.as_slice() {
         [number] => return Ok(*number),
         [] => {}
         several => {
             let numbers: Vec<String> = several.iter().map(|number| format!("{list}.{}", number + 1)).collect();
-            let message = format!("{} entries of `{list}` are named {word:?}", several.len());
+            let message = format!("{} entries of `{list}` are named {key_text:?}", several.len());
             return refuse(key.span(), message, format!("refer to each by its number: {}", numbers.join(", ")));
         }
     }
-    if let Some(number) = word.parse::<usize>().ok().and_then(|number| number.checked_sub(1))
+    if let Some(number) = key_text.parse::<usize>().ok().and_then(|number| number.checked_sub(1))
         && number < entries.len()
     {
         return Ok(number);
@@ -251,8 +255,8 @@ fn position(list: &str, entries: &[Node], key: &Key) -> Result<usize, Mistake> {
     let help = match known.as_slice() {
         _ if entries.is_empty() => "the list is empty".into(),
         [] => counted,
-        _ if word.parse::<usize>().is_ok() => counted,
-        known => suggestion(word, word, known),
+        _ if key_text.parse::<usize>().is_ok() => counted,
+        known => suggestion(key_text, key_text, known),
     };
-    refuse(key.span(), format!("`{list}` has no entry `{word}`"), help)
+    refuse(key.span(), format!("`{list}` has no entry `{key_text}`"), help)
 }

@@ -6,7 +6,7 @@ use super::mistake::Mistake;
 use crate::scene::web_color::web_color;
 
 /// Returns what is certainly wrong in or above the line where the parser stopped, by what it said there.
-pub(super) fn slip(text: &str, span: &Range<usize>, said: &str) -> Option<Mistake> {
+pub(super) fn slip(text: &str, span: &Range<usize>, parser_message: &str) -> Option<Mistake> {
     let place = span.start;
     let stop = text.get(..place)?;
     // Texts in triple quotes, which may span several lines, are not examined.
@@ -18,9 +18,9 @@ pub(super) fn slip(text: &str, span: &Range<usize>, said: &str) -> Option<Mistak
     color_as_comment(&text[..start + line.len()])
         .or_else(|| open_quote(text, start, place))
         .or_else(|| strange_space(line, start))
-        .or_else(|| match said.split(',').next()? {
-            "unclosed table" => heading_of_words(line, start),
-            "duplicate key" => of_one(text.get(span.clone())?, stop, line),
+        .or_else(|| match parser_message.split(',').next()? {
+            "unclosed table" => spaced_heading(line, start),
+            "duplicate key" => single_heading(text.get(span.clone())?, stop, line),
             "unexpected `=` in array" => key_in_list(text, place),
             _ => None,
         })
@@ -28,7 +28,7 @@ pub(super) fn slip(text: &str, span: &Range<usize>, said: &str) -> Option<Mistak
 
 /// Returns a line without its comment, in which quoted texts are replaced by as many dots as they have bytes, and the
 /// position of a double quote that is never closed.
-fn without_texts(line: &str) -> (String, Option<usize>) {
+fn mask_quoted(line: &str) -> (String, Option<usize>) {
     let (mut bare, mut rest) = (String::new(), line);
     while let Some(at) = rest.find(['"', '\'', '#']) {
         let (before, from) = rest.split_at(at);
@@ -36,7 +36,7 @@ fn without_texts(line: &str) -> (String, Option<usize>) {
         let quote = from.as_bytes()[0];
         let end = match quote {
             b'#' => return (bare, None),
-            b'"' => closing(from),
+            b'"' => quoted_length(from),
             _ => from[1..].find('\'').map(|end| end + 2),
         };
         let Some(end) = end else {
@@ -50,7 +50,7 @@ fn without_texts(line: &str) -> (String, Option<usize>) {
 }
 
 /// Returns the length of the text in double quotes with which `from` begins.
-fn closing(from: &str) -> Option<usize> {
+fn quoted_length(from: &str) -> Option<usize> {
     let mut is_escaped = false;
     let end = from.bytes().skip(1).position(|byte| {
         let closes = byte == b'"' && !is_escaped;
@@ -64,7 +64,7 @@ fn closing(from: &str) -> Option<usize> {
 fn color_as_comment(text: &str) -> Option<Mistake> {
     let mut start = 0;
     for line in text.split_inclusive('\n') {
-        let (bare, open) = without_texts(line);
+        let (bare, open) = mask_quoted(line);
         let (key, comment) = (bare.trim_end(), line.get(bare.len()..).unwrap_or_default());
         let digits = comment.trim_start_matches('#').find(|c: char| !c.is_ascii_alphanumeric());
         let written = digits.map_or(comment, |end| &comment[..=end]);
@@ -95,7 +95,7 @@ fn open_quote(text: &str, start: usize, place: usize) -> Option<Mistake> {
     if line.contains('\\') {
         return None;
     }
-    let quote = without_texts(line).1?;
+    let quote = mask_quoted(line).1?;
     let word = line[..quote].rsplit([' ', '\t', '=', '[', '{', ',']).next().unwrap_or_default();
     if word.is_empty() {
         let end = start + line.len();
@@ -110,7 +110,7 @@ fn open_quote(text: &str, start: usize, place: usize) -> Option<Mistake> {
 /// Finds a space that TOML does not allow, as web pages and word processors produce it.
 fn strange_space(line: &str, start: usize) -> Option<Mistake> {
     let (line, start) = line.strip_prefix('\u{feff}').filter(|_| start == 0).map_or((line, start), |line| (line, 3));
-    let bare = without_texts(line).0;
+    let bare = mask_quoted(line).0;
     let is_strange = |c: char| c.is_whitespace() && !c.is_ascii() || "\u{200b}\u{2060}\u{feff}".contains(c);
     let (at, space) = bare.char_indices().find(|(_, c)| is_strange(*c))?;
     let span = start + at..start + at + space.len_utf8();
@@ -119,16 +119,16 @@ fn strange_space(line: &str, start: usize) -> Option<Mistake> {
 }
 
 /// Finds a heading with a space in the name of its material, or before it. The line begins at `start`.
-fn heading_of_words(line: &str, start: usize) -> Option<Mistake> {
-    let bare = without_texts(line).0;
+fn spaced_heading(line: &str, start: usize) -> Option<Mistake> {
+    let bare = mask_quoted(line).0;
     let inner = bare.trim().strip_prefix('[')?.strip_suffix(']')?.trim();
     let name = inner.strip_prefix("material")?.trim_start_matches(['.', ' ']).trim_end();
-    let is_apart = inner["material".len()..].starts_with(['.', ' ']);
-    if name.is_empty() || !is_apart {
+    let is_separate = inner["material".len()..].starts_with(['.', ' ']);
+    if name.is_empty() || !is_separate {
         return None;
     }
     let at = start + bare.find(inner)?;
-    let (message, help) = match is_bare(name) {
+    let (message, help) = match is_bare_key(name) {
         true => ("a heading joins its words with a dot", format!("write [material.{name}]")),
         false => ("a name with a space needs quotes", format!("write [material.\"{name}\"]")),
     };
@@ -136,7 +136,7 @@ fn heading_of_words(line: &str, start: usize) -> Option<Mistake> {
     is_one.then(|| Mistake { span: at..at + inner.len(), message: message.into(), help: Some(help) })
 }
 
-fn is_bare(name: &str) -> bool {
+fn is_bare_key(name: &str) -> bool {
     name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c))
 }
 
@@ -144,7 +144,7 @@ fn is_bare(name: &str) -> bool {
 pub(super) fn heading(line: &str) -> Option<String> {
     let line = line.trim();
     let word = line.trim_matches(|c: char| c.is_whitespace() || "[](){}<>:".contains(c));
-    let material = || word.strip_prefix("material.").is_some_and(|name| !name.is_empty() && is_bare(name));
+    let material = || word.strip_prefix("material.").is_some_and(|name| !name.is_empty() && is_bare_key(name));
     match word {
         "camera" | "film" | "render" | "set" => Some(format!("write [{word}]")),
         "object" | "light" => Some(format!("write [[{word}]]")),
@@ -182,7 +182,7 @@ fn key_in_list(text: &str, place: usize) -> Option<Mistake> {
 }
 
 /// Finds a section that should be an entry of a list, above the line that begins the list correctly.
-fn of_one(key: &str, before: &str, line: &str) -> Option<Mistake> {
+fn single_heading(key: &str, before: &str, line: &str) -> Option<Mistake> {
     if !line.starts_with("[[") || !matches!(key, "object" | "light") {
         return None;
     }

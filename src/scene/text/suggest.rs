@@ -4,10 +4,10 @@ use std::path::Path;
 
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::elsewhere::{called_here, in_other_words};
+use super::elsewhere::{in_other_words, names_here};
 use super::named_file::IMAGES;
 use super::tree::Node;
-use crate::error::{ends_in, nearest};
+use crate::error::{has_extension, nearest};
 use crate::film::layer_elsewhere;
 use crate::scene::share;
 use crate::scene::web_color::web_color;
@@ -19,7 +19,7 @@ pub(super) fn suggestion(key: &str, word: &str, known: &[&str]) -> String {
     if let Some(help) = layer().or_else(|| in_other_words(word, known)) {
         return help;
     }
-    match meant(key, word, known) {
+    match meant_name(key, word, known) {
         Some(near) => format!("did you mean `{near}`?"),
         None => format!("known here: {}", known.join(", ")),
     }
@@ -30,12 +30,12 @@ const BRIGHTNESS: [&str; 5] = ["intensity", "strength", "power", "brightness", "
 
 /// Returns what to write for a key that a table does not know: the key that was meant, or what to do if that key is
 /// there already.
-pub(super) fn suggested_key(word: &str, known: &[&str], beside: &DeTable) -> String {
+pub(super) fn suggested_key(word: &str, known: &[&str], table: &DeTable) -> String {
     // A misspelled key, and one with an answer of its own, gets the same answer everywhere.
-    let is_told = nearest(word, known.iter().copied()).is_some() || in_other_words(word, known).is_some();
-    let free: Vec<&str> = known.iter().copied().filter(|&key| !beside.contains_key(key)).collect();
-    let is_another = is_told || meant(word, word, &free).is_some();
-    match meant(word, word, known).filter(|_| !is_another) {
+    let has_answer = nearest(word, known.iter().copied()).is_some() || in_other_words(word, known).is_some();
+    let free: Vec<&str> = known.iter().copied().filter(|&key| !table.contains_key(key)).collect();
+    let is_another = has_answer || meant_name(word, word, &free).is_some();
+    match meant_name(word, word, known).filter(|_| !is_another) {
         None => suggestion(word, word, known),
         Some(near) if BRIGHTNESS.contains(&word) => format!("multiply `{near}` by it"),
         Some(near) => format!("`{near}` is already given here: leave one of them out"),
@@ -43,18 +43,18 @@ pub(super) fn suggested_key(word: &str, known: &[&str], beside: &DeTable) -> Str
 }
 
 /// Returns the known name that the value or key `word` may mean, if any is near.
-pub(super) fn meant<'a>(key: &str, word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub(super) fn meant_name<'a>(key: &str, word: &str, known: &[&'a str]) -> Option<&'a str> {
     let lower = word.to_lowercase();
     let is_part = |name: &str| name.to_lowercase().starts_with(&lower) || name.split('_').any(|part| part == word);
     let part_of = || known.iter().copied().find(|name| is_part(name));
-    let elsewhere = || called_here(word).find(|here| known.contains(here));
-    let space = || (key == "color_space").then(|| ColorSpace::called(word)).flatten().map(ColorSpace::interop_id);
+    let elsewhere = || names_here(word).find(|here| known.contains(here));
+    let space = || (key == "color_space").then(|| ColorSpace::from_name(word)).flatten().map(ColorSpace::interop_id);
     // `tile` is a word of other programs for `repeat`, although it differs from `file` by a single letter.
     elsewhere().or_else(|| nearest(word, known.iter().copied())).or_else(part_of).or_else(space)
 }
 
 /// Tables for which people write only the value that matters most, and the key of that value.
-const SHORT: [(&str, &str); 9] = [
+const SHORTHANDS: [(&str, &str); 9] = [
     ("diffuse", "reflectance"),
     ("plastic", "reflectance"),
     ("mirror", "reflectance"),
@@ -67,13 +67,13 @@ const SHORT: [(&str, &str); 9] = [
 ];
 
 /// Returns how to write a table, if only its main value stands in its place.
-fn in_short(key: &str, value: &DeValue, written: &str) -> Option<String> {
-    let (_, inner) = SHORT.iter().find(|short| short.0 == key)?;
+fn expand_shorthand(key: &str, value: &DeValue, written: &str) -> Option<String> {
+    let (_, inner) = SHORTHANDS.iter().find(|short| short.0 == key)?;
     let is_color = matches!(*inner, "reflectance" | "radiance");
     let whole = |value: String| Some(format!("write {{ {inner} = {value} }}"));
     match value {
         DeValue::Integer(_) | DeValue::Float(_) if is_color || *inner == "index" => whole(written.into()),
-        DeValue::String(text) if is_color && ends_in(Path::new(&**text), IMAGES) => {
+        DeValue::String(text) if is_color && has_extension(Path::new(&**text), IMAGES) => {
             whole(format!("{{ image = {written} }}"))
         }
         DeValue::String(_) if matches!(*inner, "reflectance" | "index" | "metal") => whole(written.into()),
@@ -101,8 +101,8 @@ fn vector(key: &str, text: &str) -> Option<String> {
 pub(super) const TABLE: &str = "a table, { .. }";
 
 /// Returns how to write what a value of the wrong type seems to mean.
-pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) -> Option<String> {
-    let number = wanted == "a number" || wanted.starts_with("a whole number") || wanted.starts_with("at most");
+pub(super) fn remedy(key: &str, value: &DeValue, expected: &str, written: &str) -> Option<String> {
+    let number = expected == "a number" || expected.starts_with("a whole number") || expected.starts_with("at most");
     match value {
         DeValue::String(text) if number && text.parse::<f64>().is_ok_and(f64::is_finite) => {
             Some(format!("write it without quotes: {text}"))
@@ -123,7 +123,7 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             _ if key == "blackbody" => Some(format!("write {{ illuminant = {written} }} for a light by name")),
             _ => None,
         },
-        DeValue::String(_) | DeValue::Integer(_) if key == "rgb" && wanted == "a list of 3 numbers" => {
+        DeValue::String(_) | DeValue::Integer(_) if key == "rgb" && expected == "a list of 3 numbers" => {
             let color = web_color(value.as_str().unwrap_or(written));
             let listed = || value.as_str().map_or_else(|| Some(without_braces(written)), |text| vector(key, text));
             color.map(|color| format!("write {color}, in linear light")).or_else(listed)
@@ -134,17 +134,17 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         DeValue::Integer(_) | DeValue::Float(_) if key == "time" && !written.starts_with('-') => {
             Some(format!("write \"{written}s\" for seconds"))
         }
-        DeValue::Integer(_) | DeValue::Float(_) if wanted == "a list of 2 numbers" => match key {
+        DeValue::Integer(_) | DeValue::Float(_) if expected == "a list of 2 numbers" => match key {
             "samples" => Some("write [[wavelength in nm, value], ..]".into()),
             "lines" => Some("write [[wavelength in nm, power], ..]".into()),
             "uv" => Some("write [[u, v], ..]".into()),
             "shift" => Some("write [to the right, up]".into()),
             _ => None,
         },
-        DeValue::Integer(_) | DeValue::Float(_) if wanted == "a list" && key == "faces" => {
+        DeValue::Integer(_) | DeValue::Float(_) if expected == "a list" && key == "faces" => {
             Some("write [[0, 1, 2], ..]".into())
         }
-        DeValue::Integer(_) | DeValue::Float(_) if wanted == "a list of 3 numbers" => match key {
+        DeValue::Integer(_) | DeValue::Float(_) if expected == "a list of 3 numbers" => match key {
             "points" | "normals" => Some("write [[x, y, z], ..]".into()),
             "axis" => Some("it is a direction in space, such as [1, 0, 0]".into()),
             "rgb" => Some(without_braces(written)),
@@ -158,54 +158,58 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         },
         DeValue::Float(float) if number => {
             let float: f64 = float.as_str().parse().ok()?;
-            let most = wanted.rsplit(' ').next().and_then(|most| most.parse::<f64>().ok());
+            let most = expected.rsplit(' ').next().and_then(|most| most.parse::<f64>().ok());
             let fits = float >= 0.0 && float.fract() == 0.0 && most.is_none_or(|most| float <= most);
             fits.then(|| format!("write {float}"))
         }
-        DeValue::Integer(_) if wanted == "a number" => Some(format!("write it with a decimal point: {written}.0")),
-        DeValue::String(text) if wanted == "true or false" && matches!(&**text, "true" | "false") => {
+        DeValue::Integer(_) if expected == "a number" => Some(format!("write it with a decimal point: {written}.0")),
+        DeValue::String(text) if expected == "true or false" && matches!(&**text, "true" | "false") => {
             Some(format!("write it without quotes: {text}"))
         }
-        DeValue::Boolean(false) if wanted.contains("\"off\"") => Some("write \"off\"".into()),
-        DeValue::Boolean(true) if wanted.contains("\"on\"") => Some("write \"on\"".into()),
-        DeValue::Boolean(true) if wanted.contains("\"auto\"") => Some("write \"auto\", or leave it out".into()),
-        DeValue::Integer(_) if wanted == "true or false" && matches!(written, "0" | "1") => {
+        DeValue::Boolean(false) if expected.contains("\"off\"") => Some("write \"off\"".into()),
+        DeValue::Boolean(true) if expected.contains("\"on\"") => Some("write \"on\"".into()),
+        DeValue::Boolean(true) if expected.contains("\"auto\"") => Some("write \"auto\", or leave it out".into()),
+        DeValue::Integer(_) if expected == "true or false" && matches!(written, "0" | "1") => {
             Some(format!("write {}", written == "1"))
         }
-        DeValue::String(_) if wanted == TABLE && key == "mesh" => Some(format!("write {{ file = {written} }}")),
-        DeValue::String(_) if wanted == TABLE && key.ends_with("_map") => {
+        DeValue::String(_) if expected == TABLE && key == "mesh" => Some(format!("write {{ file = {written} }}")),
+        DeValue::String(_) if expected == TABLE && key.ends_with("_map") => {
             Some(format!("write {{ image = {written}, .. }}"))
         }
-        DeValue::String(text) if wanted == "a list of 3 numbers" => vector(key, text),
-        DeValue::Array(list) if wanted == TABLE && key == "abbe" && list.len() == 2 => {
+        DeValue::String(text) if expected == "a list of 3 numbers" => vector(key, text),
+        DeValue::Array(list) if expected == TABLE && key == "abbe" && list.len() == 2 => {
             let (nd, vd) = written.trim_matches(['[', ']']).split_once(',')?;
             Some(format!("write {{ nd = {}, vd = {} }}", nd.trim(), vd.trim()))
         }
-        DeValue::Table(table) if wanted == "a list of 3 numbers" && table.contains_key("x") => {
+        DeValue::Table(table) if expected == "a list of 3 numbers" && table.contains_key("x") => {
             Some("write [x, y, z]".into())
         }
-        _ if wanted == TABLE && SHORT.iter().any(|short| short.0 == key) => in_short(key, value, written),
-        DeValue::Array(_) if wanted == TABLE && key == "sellmeier" => {
+        _ if expected == TABLE && SHORTHANDS.iter().any(|short| short.0 == key) => {
+            expand_shorthand(key, value, written)
+        }
+        DeValue::Array(_) if expected == TABLE && key == "sellmeier" => {
             Some("write { b = [1.0396, 0.2318, 1.0105], c = [0.006, 0.02, 103.56] }, c in um^2".into())
         }
-        _ if wanted == TABLE && key == "rotate" => Some("write { axis = [0, 1, 0], degrees = 30 }".into()),
-        DeValue::Array(_) if key == "axis" && wanted == "a number" => {
+        _ if expected == TABLE && key == "rotate" => Some("write { axis = [0, 1, 0], degrees = 30 }".into()),
+        DeValue::Array(_) if key == "axis" && expected == "a number" => {
             Some("in degrees: 0 points to the right of the image, 90 to its top".into())
         }
-        DeValue::Integer(_) | DeValue::Float(_) if wanted == TABLE && key == "polarizer" => {
+        DeValue::Integer(_) | DeValue::Float(_) if expected == TABLE && key == "polarizer" => {
             Some(format!("write {{ axis = {written} }}"))
         }
-        DeValue::Array(_) if key == "scale" && wanted == "a number" => {
+        DeValue::Array(_) if key == "scale" && expected == "a number" => {
             Some("`scale` multiplies the values; copies of an image are set by `repeat`".into())
         }
         DeValue::Array(_) if key == "image" => Some("write the name of its file, such as \"wood.png\"".into()),
         DeValue::Table(_) if key == "roughness" => {
             Some("it is uniform: to vary it, `mix` two materials by an image".into())
         }
-        DeValue::Array(entries) if wanted.starts_with("a number, a catalog name") => spectrum_of(entries, written),
+        DeValue::Array(entries) if expected.starts_with("a number, a catalog name") => {
+            spectrum_remedy(entries, written)
+        }
         DeValue::Table(_) if key == "material" => Some("define it as [material.NAME] and write \"NAME\" here".into()),
         DeValue::Table(_) if key == "checker" => Some("write checker = [0.1, 0.8], and `repeat` beside it".into()),
-        DeValue::Table(_) if wanted == "a list" => Some("put it in brackets: [{ .. }]".into()),
+        DeValue::Table(_) if expected == "a list" => Some("put it in brackets: [{ .. }]".into()),
         _ => None,
     }
 }
@@ -216,7 +220,7 @@ fn without_braces(written: &str) -> String {
 }
 
 /// Returns how to write what a list in place of a spectrum seems to mean.
-fn spectrum_of(entries: &DeArray, written: &str) -> Option<String> {
+fn spectrum_remedy(entries: &DeArray, written: &str) -> Option<String> {
     let are_numbers =
         |list: &DeArray, count: usize| list.len() == count && list.iter().all(|entry| is_number(entry.get_ref()));
     if are_numbers(entries, 3) {
@@ -228,7 +232,7 @@ fn spectrum_of(entries: &DeArray, written: &str) -> Option<String> {
 }
 
 /// Returns how to write a list that has `count` numbers if commas within them are decimal points.
-pub(super) fn with_points(written: &str, count: usize) -> Option<String> {
+pub(super) fn with_decimal_points(written: &str, count: usize) -> Option<String> {
     let inner = written.strip_prefix('[')?.strip_suffix(']')?;
     let parts: Vec<&str> = inner.split([' ', '\t', ';']).map(|part| part.trim_matches(',')).collect();
     let parts: Vec<String> =

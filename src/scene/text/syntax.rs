@@ -9,34 +9,36 @@ use crate::error::nearest;
 /// Explains the error of reading a text as TOML.
 pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake {
     let span = error.span().unwrap_or(0..0);
-    let said = error.message().lines().next().unwrap_or("this is not TOML");
-    if let Some(slip) = slip(text, &span, said) {
+    let parser_message = error.message().lines().next().unwrap_or("this is not TOML");
+    if let Some(slip) = slip(text, &span, parser_message) {
         return slip;
     }
     let (before, rest) = text.split_at_checked(span.start).unwrap_or((text, ""));
     let line = before.rsplit('\n').next().unwrap_or_default();
     let written = text.get(span.clone()).unwrap_or_default();
-    let (message, help) = match said.split(", expected").next().unwrap_or(said) {
-        "key with no value" => return without_value(span, line, rest),
-        "string values must be quoted" => unquoted(written),
+    let (message, help) = match parser_message.split(", expected").next().unwrap_or(parser_message) {
+        "key with no value" => return explain_missing_value(span, line, rest),
+        "string values must be quoted" => explain_unquoted(written),
         "invalid basic string" | "invalid literal string" if rest.is_empty() || rest.starts_with(['\r', '\n']) => {
             ("the closing quote is missing".into(), None)
         }
-        _ if said.starts_with("missing escaped value") || said.contains("unicode hexadecimal value") => {
+        _ if parser_message.starts_with("missing escaped value")
+            || parser_message.contains("unicode hexadecimal value") =>
+        {
             let help = "write / in the path of a file, or put the text in single quotes";
             ("in double quotes, `\\` starts an escape sequence".into(), Some(help.into()))
         }
-        "missing comma between array elements" => return unclosed(before, ']'),
+        "missing comma between array elements" => return unclosed_bracket(before, ']'),
         "missing comma between key-value pairs" | "missing key for inline table element" => {
-            return unclosed(before, '}');
+            return unclosed_bracket(before, '}');
         }
         "invalid literal string" | "extra comma in inline table" if !written.starts_with('\'') => {
-            return of_inline_table(before, rest);
+            return explain_inline_table(before, rest);
         }
         "unclosed array" | "unclosed table" => ("the closing `]` is missing".into(), None),
         "unclosed array table" => ("the closing `]]` is missing".into(), None),
         "unclosed inline table" => ("the closing `}` is missing".into(), None),
-        "unexpected key or value" => ("the line should end after its value".into(), after_value(line, rest)),
+        "unexpected key or value" => ("the line should end after its value".into(), after_value_help(line, rest)),
         "invalid mantissa" => ("a number starts with a digit, as in 0.5".into(), None),
         "invalid fraction" => ("a number ends with a digit, as in 1.0".into(), None),
         "unexpected leading zero" => ("a number has no leading zero".into(), None),
@@ -44,21 +46,21 @@ pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake 
         "invalid float" | "invalid integer number" | "invalid boolean" if is_word(written) => word(written),
         "invalid float" | "invalid integer number" => ("this is not a number".into(), None),
         "missing assignment between key-value pairs" => {
-            ("a key is followed by `=` and its value".into(), before_sign(line, rest))
+            ("a key is followed by `=` and its value".into(), missing_sign_help(line, rest))
         }
         "carriage return must be followed by newline" => {
             let help = "save the file with Unix or Windows line endings";
             ("a carriage return alone does not end a line".into(), Some(help.into()))
         }
         "missing opening quote" => ("TOML needs straight quotes".into(), Some("write \"..\"".into())),
-        "invalid unquoted key" => unquoted_key(said, line, rest),
-        "duplicate key" => duplicate(written, before, line),
-        _ => (said.to_owned(), None),
+        "invalid unquoted key" => explain_unquoted_key(parser_message, line, rest),
+        "duplicate key" => explain_duplicate(written, before, line),
+        _ => (parser_message.to_owned(), None),
     };
     Mistake { span, message, help }
 }
 
-fn without_value(span: Range<usize>, line: &str, rest: &str) -> Mistake {
+fn explain_missing_value(span: Range<usize>, line: &str, rest: &str) -> Mistake {
     let key = line.trim();
     let start = span.start - line.len() + (line.len() - line.trim_start().len());
     let (span, help) = if key.starts_with("//") {
@@ -82,34 +84,34 @@ fn whole_line(line: &str, rest: &str) -> String {
 }
 
 /// Returns what to do where a key is not followed by its `=`.
-fn before_sign(line: &str, rest: &str) -> Option<String> {
+fn missing_sign_help(line: &str, rest: &str) -> Option<String> {
     if rest.trim_start().starts_with(':') || line.trim_end().ends_with(':') {
         return Some("write `=` instead of `:`".into());
     }
     let whole = whole_line(line, rest);
-    let of_heading = heading(&whole).map(|help| format!("a heading needs brackets: {}", &help["write ".len()..]));
-    of_heading.or_else(|| loose_list(&whole, line.len()))
+    let heading_help = heading(&whole).map(|help| format!("a heading needs brackets: {}", &help["write ".len()..]));
+    heading_help.or_else(|| loose_list(&whole, line.len()))
 }
 
 /// Explains a key with letters that TOML only allows in quotes.
-fn unquoted_key(said: &str, line: &str, rest: &str) -> (String, Option<String>) {
+fn explain_unquoted_key(parser_message: &str, line: &str, rest: &str) -> (String, Option<String>) {
     let is_end = |c: char| c.is_whitespace() || ".,=:[](){}<>\"'#".contains(c);
     let first = line.rsplit(is_end).next().unwrap_or_default();
     let word = format!("{first}{}", rest.split(is_end).next().unwrap_or_default());
     match word.chars().all(|c| c.is_alphanumeric() || "-_".contains(c)) && !word.is_ascii() {
         true => ("a name with letters beyond a to z needs quotes".into(), Some(format!("write \"{word}\""))),
-        false => (said.to_owned(), None),
+        false => (parser_message.to_owned(), None),
     }
 }
 
 /// Reports a bracket that is not closed. The parser notices it only at the next word, which may be lines below.
-fn unclosed(before: &str, bracket: char) -> Mistake {
+fn unclosed_bracket(before: &str, bracket: char) -> Mistake {
     let end = before.trim_end().len();
     Mistake { span: end..end, message: format!("a comma or the closing `{bracket}` is missing here"), help: None }
 }
 
 /// Explains a table in braces in which a key has no value, or a number contains a comma.
-fn of_inline_table(before: &str, rest: &str) -> Mistake {
+fn explain_inline_table(before: &str, rest: &str) -> Mistake {
     let before = before.trim_end();
     let line = before.rsplit('\n').next().unwrap_or_default();
     let whole = whole_line(line, rest);
@@ -146,7 +148,7 @@ fn word(written: &str) -> (String, Option<String>) {
     ("this is neither true nor false".into(), Some(format!("write {truth}")))
 }
 
-fn unquoted(written: &str) -> (String, Option<String>) {
+fn explain_unquoted(written: &str) -> (String, Option<String>) {
     let parts: Vec<&str> = written.split_whitespace().collect();
     if parts.is_empty() {
         ("a value is missing here".into(), None)
@@ -181,7 +183,7 @@ fn is_call(written: &str) -> bool {
     name.is_some_and(|name| ["sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "radians", "degrees"].contains(&name))
 }
 
-fn after_value(line: &str, rest: &str) -> Option<String> {
+fn after_value_help(line: &str, rest: &str) -> Option<String> {
     if rest.trim_start().starts_with("//") {
         return Some("a comment starts with #".into());
     }
@@ -205,7 +207,7 @@ fn after_value(line: &str, rest: &str) -> Option<String> {
 
 const OWN_LINE: &str = "each key goes on a line of its own";
 
-fn duplicate(key: &str, before: &str, line: &str) -> (String, Option<String>) {
+fn explain_duplicate(key: &str, before: &str, line: &str) -> (String, Option<String>) {
     if line.starts_with('[') && matches!(key, "object" | "light") {
         return (format!("`{key}` is a list of tables"), Some(format!("write [[{key}]] for each")));
     }

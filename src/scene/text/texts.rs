@@ -17,7 +17,7 @@ pub(in crate::scene) struct Texts {
     pub(in crate::scene) whole: String,
     parts: Vec<TextPart>,
     /// How messages name places.
-    pub(in crate::scene) told_by: LocatedBy,
+    pub(in crate::scene) located_by: LocatedBy,
     /// Rows of numbers that a program has given beside the texts.
     pub(in crate::scene) rows: Vec<Rows>,
 }
@@ -38,7 +38,7 @@ struct TextPart {
     folder: PathBuf,
     span: Range<usize>,
     /// A copy of the text that all its mistakes share.
-    alone: OnceLock<Arc<str>>,
+    own_text: OnceLock<Arc<str>>,
 }
 
 impl Texts {
@@ -55,7 +55,7 @@ impl Texts {
             path: path.to_owned(),
             folder: folder.to_owned(),
             span: span.clone(),
-            alone: OnceLock::new(),
+            own_text: OnceLock::new(),
         });
         span
     }
@@ -89,33 +89,33 @@ impl Texts {
     }
 
     /// Returns a place as people name it, such as `at scene.toml:3:7`. A text that a program has written is not a file.
-    pub(in crate::scene) fn placed(&self, span: Range<usize>) -> String {
-        match self.told_by {
+    pub(in crate::scene) fn place_phrase(&self, span: Range<usize>) -> String {
+        match self.located_by {
             LocatedBy::Key if self.is_in_first(span.start) => "in the scene itself".into(),
-            _ => format!("at {}", self.named(span)),
+            _ => format!("at {}", self.place_name(span)),
         }
     }
 
     /// Returns a place as people name it, such as `scene.toml:3:7`.
-    pub(in crate::scene) fn named(&self, span: Range<usize>) -> String {
-        self.named_by(&mut Lines::default(), span)
+    pub(in crate::scene) fn place_name(&self, span: Range<usize>) -> String {
+        self.place_name_by(&mut Lines::default(), span)
     }
 
-    fn named_by(&self, lines: &mut Lines, span: Range<usize>) -> String {
+    fn place_name_by(&self, lines: &mut Lines, span: Range<usize>) -> String {
         let found = self.diagnostic(Mistake { span, message: String::new(), help: None }, None);
         let (line, column) = lines.place_of(&found);
         format!("{}:{line}:{column}", found.file.display())
     }
 
     /// Returns the names of many places, in time that grows with their number plus the length of the text.
-    pub(in crate::scene) fn named_all(
+    pub(in crate::scene) fn place_names(
         &self,
         places: impl Iterator<Item = Range<usize>>,
     ) -> HashMap<Range<usize>, String> {
         let mut places: Vec<_> = places.collect();
         places.sort_unstable_by_key(|span| (span.start, span.end));
         let mut lines = Lines::default();
-        places.into_iter().map(|span| (span.clone(), self.named_by(&mut lines, span))).collect()
+        places.into_iter().map(|span| (span.clone(), self.place_name_by(&mut lines, span))).collect()
     }
 
     /// Returns a mistake with its file.
@@ -125,7 +125,7 @@ impl Texts {
             return Diagnostic { file: PathBuf::new(), text: "".into(), span: 0..0, key, message, help };
         };
         let local = |at: usize| at.min(part.span.end) - part.span.start;
-        let text = part.alone.get_or_init(|| self.whole[part.span.clone()].into());
+        let text = part.own_text.get_or_init(|| self.whole[part.span.clone()].into());
         let span = local(span.start)..local(span.end);
         Diagnostic { file: part.path.clone(), text: text.clone(), span, key, message, help }
     }

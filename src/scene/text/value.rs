@@ -8,7 +8,7 @@ use toml::de::{DeInteger, DeValue};
 use super::document::Document;
 use super::named_file::{Fault, FileKind, missing, read_named};
 use super::rows::Rows;
-use super::suggest::{remedy, suggestion, with_points};
+use super::suggest::{remedy, suggestion, with_decimal_points};
 use super::tree::{Key, Node};
 
 /// A value, with its place in the text.
@@ -63,16 +63,16 @@ impl<'d> Value<'d> {
 
     /// Reports that it is wrong.
     pub(in crate::scene) fn refuse<T>(self, message: impl Into<String>) -> Option<T> {
-        self.tell(message, None)
+        self.report(message, None)
     }
 
     /// Reports that it is wrong, and what to do.
     pub(in crate::scene) fn advise<T>(self, message: impl Into<String>, help: impl Into<String>) -> Option<T> {
-        self.tell(message, Some(help.into()))
+        self.report(message, Some(help.into()))
     }
 
-    pub(in crate::scene) fn tell<T>(self, message: impl Into<String>, help: Option<String>) -> Option<T> {
-        self.document.tell(self.span(), message, help);
+    pub(in crate::scene) fn report<T>(self, message: impl Into<String>, help: Option<String>) -> Option<T> {
+        self.document.report(self.span(), message, help);
         None
     }
 
@@ -88,27 +88,27 @@ impl<'d> Value<'d> {
 
     /// Reads the file of this name.
     pub(in crate::scene) fn file(self, name: &str, kind: &FileKind) -> Option<Vec<u8>> {
-        self.told(read_named(self.folder(), name, kind))
+        self.reported(read_named(self.folder(), name, kind))
     }
 
     /// Returns the result of a check or of reading a file, or reports what is wrong.
-    pub(in crate::scene) fn told<T>(self, checked: Result<T, impl Into<Fault>>) -> Option<T> {
-        checked.map_err(Into::into).map_or_else(|Fault { message, help }| self.tell(message, help), Some)
+    pub(in crate::scene) fn reported<T>(self, checked: Result<T, impl Into<Fault>>) -> Option<T> {
+        checked.map_err(Into::into).map_or_else(|Fault { message, help }| self.report(message, help), Some)
     }
 
     /// Reports that there is no file of this name, which should have one of these extensions.
     pub(in crate::scene) fn missing<T>(self, name: &str, endings: &[&str]) -> Option<T> {
-        self.told(Err(missing(self.folder(), name, endings)))
+        self.reported(Err(missing(self.folder(), name, endings)))
     }
 
     /// Reports that its key is wrong.
     pub(in crate::scene) fn refuse_key<T>(self, message: impl Into<String>, help: Option<String>) -> Option<T> {
-        self.document.tell(self.key.span(), message, help);
+        self.document.report(self.key.span(), message, help);
         None
     }
 
     /// Reports what is expected in its place.
-    pub(in crate::scene) fn wanted<T>(self, wanted: &str) -> Option<T> {
+    pub(in crate::scene) fn expected<T>(self, expected: &str) -> Option<T> {
         let written = self.document.texts.whole.get(self.span()).unwrap_or_default();
         let found = match self.node() {
             DeValue::Array(_) => "a list".into(),
@@ -118,8 +118,8 @@ impl<'d> Value<'d> {
             DeValue::String(_) => format!("the text {written}"),
             _ => written.to_owned(),
         };
-        let help = remedy(self.key(), self.node(), wanted, written);
-        self.tell(format!("{} is {wanted}, not {found}", self.name()), help)
+        let help = remedy(self.key(), self.node(), expected, written);
+        self.report(format!("{} is {expected}, not {found}", self.name()), help)
     }
 
     fn name(self) -> String {
@@ -128,43 +128,43 @@ impl<'d> Value<'d> {
 
     pub(in crate::scene) fn number(self) -> Option<f64> {
         match self.node() {
-            DeValue::Integer(integer) => match parsed(integer) {
+            DeValue::Integer(integer) => match parse_integer(integer) {
                 Some(whole) if whole <= i128::from(u64::MAX) && whole >= i128::from(i64::MIN) => Some(whole as f64),
-                Some(_) => self.wanted("a number"),
+                Some(_) => self.expected("a number"),
                 None => self.refuse("this number is too large"),
             },
             DeValue::Float(float) => match float.as_str().parse::<f64>() {
                 Ok(number) if number.is_finite() || number.is_nan() || float.as_str().contains("inf") => Some(number),
                 _ => self.refuse("this number is too large"),
             },
-            _ => self.wanted("a number"),
+            _ => self.expected("a number"),
         }
     }
 
-    /// Reads a number within a range. `what` says in the message what the number should be.
-    pub(in crate::scene) fn within(self, range: impl RangeBounds<f64>, what: &str, help: Option<&str>) -> Option<f64> {
+    /// Reads a number within a range. `rule` says in the message what the number should be.
+    pub(in crate::scene) fn within(self, range: impl RangeBounds<f64>, rule: &str, help: Option<&str>) -> Option<f64> {
         match self.number()? {
             number if range.contains(&number) => Some(number),
-            number => self.tell(format!("{what}, not {number}"), help.map(str::to_owned)),
+            number => self.report(format!("{rule}, not {number}"), help.map(str::to_owned)),
         }
     }
 
     /// Reads a whole number within a range. If the range ends where a type does, the message names only its start.
     pub(in crate::scene) fn whole<T: TryFrom<i128>>(self, range: RangeInclusive<u64>) -> Option<T> {
-        let (least, most) = range.into_inner();
-        let is_open = most >= u64::from(u32::MAX);
-        let wanted = match is_open {
-            true => format!("a whole number of {least} or more"),
-            false => format!("a whole number from {least} to {most}"),
+        let (min, max) = range.into_inner();
+        let is_open = max >= u64::from(u32::MAX);
+        let expected = match is_open {
+            true => format!("a whole number of {min} or more"),
+            false => format!("a whole number from {min} to {max}"),
         };
         match self.node() {
-            DeValue::Integer(integer) => match parsed(integer) {
-                Some(whole) if whole > i128::from(most) && is_open => self.wanted(&format!("at most {most}")),
-                Some(whole) if !(i128::from(least)..=i128::from(most)).contains(&whole) => self.wanted(&wanted),
+            DeValue::Integer(integer) => match parse_integer(integer) {
+                Some(whole) if whole > i128::from(max) && is_open => self.expected(&format!("at most {max}")),
+                Some(whole) if !(i128::from(min)..=i128::from(max)).contains(&whole) => self.expected(&expected),
                 Some(whole) => T::try_from(whole).ok(),
                 None => self.refuse("this number is too large"),
             },
-            _ => self.wanted(&wanted),
+            _ => self.expected(&expected),
         }
     }
 
@@ -174,27 +174,27 @@ impl<'d> Value<'d> {
 
     /// Reads a whole number, which may be negative.
     pub(in crate::scene) fn integer(self) -> Option<i32> {
-        let Some(integer) = self.node().as_integer() else { return self.wanted("a whole number") };
-        let within = parsed(integer).and_then(|whole| i32::try_from(whole).ok());
-        within.or_else(|| self.wanted(&format!("a whole number from {} to {}", i32::MIN, i32::MAX)))
+        let Some(integer) = self.node().as_integer() else { return self.expected("a whole number") };
+        let within = parse_integer(integer).and_then(|whole| i32::try_from(whole).ok());
+        within.or_else(|| self.expected(&format!("a whole number from {} to {}", i32::MIN, i32::MAX)))
     }
 
     pub(in crate::scene) fn text(self) -> Option<&'d str> {
-        self.node().as_str().or_else(|| self.wanted("text in quotes"))
+        self.node().as_str().or_else(|| self.expected("text in quotes"))
     }
 
     pub(in crate::scene) fn yes_or_no(self) -> Option<bool> {
-        self.node().as_bool().or_else(|| self.wanted("true or false"))
+        self.node().as_bool().or_else(|| self.expected("true or false"))
     }
 
     /// Returns what a word stands for.
     pub(in crate::scene) fn word<T: Copy>(self, words: &[(&'static str, T)]) -> Option<T> {
         let Some(word) = self.node().as_str() else {
-            if words.len() > MOST_WORDS {
+            if words.len() > MAX_WORDS {
                 return self.text().and(None);
             }
             let quoted: Vec<String> = words.iter().map(|(known, _)| format!("\"{known}\"")).collect();
-            return self.wanted(&one_of(&quoted));
+            return self.expected(&one_of(&quoted));
         };
         words.iter().find(|(known, _)| *known == word).map(|(_, meaning)| *meaning).or_else(|| {
             let known: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
@@ -204,8 +204,8 @@ impl<'d> Value<'d> {
 
     /// Returns whether there are already so many mistakes that further ones get no suggestion of a name, which would
     /// take a look at all known names.
-    pub(in crate::scene) fn is_one_of_many(self) -> bool {
-        self.document.told() >= MANY
+    pub(in crate::scene) fn has_many_mistakes(self) -> bool {
+        self.document.reported() >= MANY_MISTAKES
     }
 
     /// Reports that it is none of the known words.
@@ -215,7 +215,7 @@ impl<'d> Value<'d> {
 
     /// Returns the values of a table's keys.
     pub(in crate::scene) fn table(self) -> Option<Vec<Self>> {
-        let Some(table) = self.node().as_table() else { return self.wanted("a table") };
+        let Some(table) = self.node().as_table() else { return self.expected("a table") };
         Some(table.iter().map(|(key, node)| Self::new(self.document, key, node)).collect())
     }
 
@@ -227,13 +227,13 @@ impl<'d> Value<'d> {
 
     /// Reads all entries of a list. Returns none if any of them is wrong. Stops at a wrong one that is not a table.
     pub(in crate::scene) fn list<T>(self, mut read: impl FnMut(Self) -> Option<T>) -> Option<Vec<T>> {
-        let Some(entries) = self.entries() else { return self.wanted("a list") };
+        let Some(entries) = self.entries() else { return self.expected("a list") };
         let (count, mut all) = (entries.len(), Vec::with_capacity(entries.len()));
         for entry in entries {
-            let told = self.document.told();
+            let reported = self.document.reported();
             all.extend(read(entry));
             // A mistake in one entry that is not a table is mostly in all of them.
-            let is_wrong = self.document.told() > told && self.document.last() == Some(entry.span());
+            let is_wrong = self.document.reported() > reported && self.document.last() == Some(entry.span());
             if is_wrong && !entry.node().is_table() {
                 return None;
             }
@@ -243,28 +243,28 @@ impl<'d> Value<'d> {
 
     /// Reads all entries of a list, and reports each one that is wrong. Returns none if any is.
     pub(in crate::scene) fn each<T>(self, read: impl FnMut(Self) -> Option<T>) -> Option<Vec<T>> {
-        let Some(entries) = self.entries() else { return self.wanted("a list") };
+        let Some(entries) = self.entries() else { return self.expected("a list") };
         let all: Vec<Option<T>> = entries.map(read).collect();
         all.into_iter().collect()
     }
 
     /// Returns the rows of numbers that a program has given for it, if there are any.
     pub(in crate::scene) fn rows(self) -> Option<&'d Rows> {
-        let position = self.node().as_str().and_then(Rows::marked)?;
+        let position = self.node().as_str().and_then(Rows::marked_position)?;
         self.document.texts.rows.get(position)
     }
 
     /// Reads the entries of a list of a given length.
     pub(in crate::scene) fn array<T, const N: usize>(self, read: impl FnMut(Self) -> Option<T>) -> Option<[T; N]> {
         match self.entries().map(|entries| entries.len()) {
-            None => self.wanted(&format!("a list of {N} numbers")),
+            None => self.expected(&format!("a list of {N} numbers")),
             Some(count) if count != N => {
                 let name = self.list.map(|list| list.0).filter(|name| !name.is_empty());
                 let name = name.map_or_else(|| self.name(), str::to_owned);
                 let help = self.list.map(|list| list.1.to_owned()).filter(|help| !help.is_empty());
                 let written = self.document.texts.whole.get(self.span()).unwrap_or_default();
-                let help = with_points(written, N).filter(|_| count > N).or(help);
-                self.tell(format!("{name} is a list of {N} numbers, not {count}"), help)
+                let help = with_decimal_points(written, N).filter(|_| count > N).or(help);
+                self.report(format!("{name} is a list of {N} numbers, not {count}"), help)
             }
             Some(_) => self.list(read)?.try_into().ok(),
         }
@@ -279,7 +279,7 @@ impl<'d> Value<'d> {
         match self.node() {
             DeValue::Integer(_) | DeValue::Float(_) => self.number().map(|number| [number; N]),
             DeValue::Array(_) => self.numbers(),
-            _ => self.wanted(&format!("a number or {form}")),
+            _ => self.expected(&format!("a number or {form}")),
         }
     }
 }
@@ -308,15 +308,15 @@ pub(in crate::scene) fn exactly<T, const N: usize>(
 }
 
 /// Returns the range of the numbers above 0, up to a maximum.
-pub(in crate::scene) fn above_0_to(most: f64) -> (Bound<f64>, Bound<f64>) {
-    (Bound::Excluded(0.0), Bound::Included(most))
+pub(in crate::scene) fn above_0_to(max: f64) -> (Bound<f64>, Bound<f64>) {
+    (Bound::Excluded(0.0), Bound::Included(max))
 }
 
 /// Number of mistakes in a scene that a person still reads one by one.
-pub(super) const MANY: usize = 100;
+pub(super) const MANY_MISTAKES: usize = 100;
 
 /// Maximum number of known words that are all listed in a mistake.
-const MOST_WORDS: usize = 10;
+const MAX_WORDS: usize = 10;
 
 /// Lists words as `a, b or c`.
 fn one_of(words: &[String]) -> String {
@@ -328,6 +328,6 @@ fn one_of(words: &[String]) -> String {
 }
 
 /// Parses an integer of at most 128 bits.
-fn parsed(integer: &DeInteger) -> Option<i128> {
+fn parse_integer(integer: &DeInteger) -> Option<i128> {
     i128::from_str_radix(integer.as_str(), integer.radix()).ok()
 }

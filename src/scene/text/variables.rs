@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use toml::de::{DeTable, DeValue};
 
 use super::mistake::Mistake;
-use super::tree::{Key, Node, word};
-use super::value::MANY;
+use super::tree::{Key, Node, key_text};
+use super::value::MANY_MISTAKES;
 use crate::error::nearest;
 
 /// The section of the variables.
@@ -27,14 +27,17 @@ struct Variables<'d> {
 
 /// Removes the variables from a scene and inserts their values where they are used. Returns the names of those that are
 /// not used. A mistake in a value is reported where the variable is defined.
-pub(in crate::scene) fn fill(root: &mut DeTable, sections: &[&str]) -> Result<Vec<String>, Vec<Mistake>> {
+pub(in crate::scene) fn substitute_variables(
+    root: &mut DeTable,
+    sections: &[&str],
+) -> Result<Vec<String>, Vec<Mistake>> {
     let mut variables = Variables::default();
     if let Some((key, given)) = root.remove_entry(SET) {
         match given.into_inner() {
             DeValue::Table(table) => {
                 table.into_iter().for_each(|(name, value)| variables.define(&name, value, sections));
             }
-            _ => variables.tell(
+            _ => variables.report(
                 &key,
                 "`set` is the table of variables".into(),
                 "write [set], with the variables below it".into(),
@@ -51,22 +54,22 @@ pub(in crate::scene) fn fill(root: &mut DeTable, sections: &[&str]) -> Result<Ve
 }
 
 impl<'d> Variables<'d> {
-    fn tell(&mut self, place: &toml::Spanned<impl Sized>, message: String, help: String) {
+    fn report(&mut self, place: &toml::Spanned<impl Sized>, message: String, help: String) {
         self.mistakes.push(Mistake { span: place.span(), message, help: Some(help) });
     }
 
     fn define(&mut self, key: &Key<'d>, mut value: Node<'d>, sections: &[&str]) {
-        let name = word(key);
+        let name = key_text(key);
         self.known.insert(name.to_owned());
         if sections.contains(&name) {
             let message = format!("`{name}` is a section of the scene, not a variable");
-            self.tell(key, message, "give the variable another name".into());
+            self.report(key, message, "give the variable another name".into());
         } else if !is_name(name) {
             let message = format!("{name:?} cannot name a variable");
-            self.tell(key, message, "a name starts with a letter or _, followed by letters, digits, _ and -".into());
-        } else if let Some(other) = used_in(&value) {
+            self.report(key, message, "a name starts with a letter or _, followed by letters, digits, _ and -".into());
+        } else if let Some(other) = variable_in(&value) {
             let message = format!("the variable `{name}` refers to another, `{}`", variable(other).unwrap_or_default());
-            self.tell(&value, message, "give each variable a value of its own".into());
+            self.report(&value, message, "give each variable a value of its own".into());
         } else {
             self.fill_value(&mut value);
             self.values.insert(name.to_owned(), value);
@@ -101,7 +104,7 @@ impl<'d> Variables<'d> {
 
     fn unknown(&mut self, place: &Node, name: &str) {
         let message = format!("there is no variable `{name}`");
-        if self.mistakes.len() >= MANY {
+        if self.mistakes.len() >= MANY_MISTAKES {
             return self.mistakes.push(Mistake { span: place.span(), message, help: None });
         }
         let near = nearest(name, self.known.iter().map(String::as_str));
@@ -110,7 +113,7 @@ impl<'d> Variables<'d> {
             None if name == FRAME => "give the number of the frame: --frame 1, or [set] frame = 1".into(),
             None => format!("give it a value: [set] {name} = .."),
         };
-        self.tell(place, message, help);
+        self.report(place, message, help);
     }
 }
 
@@ -125,11 +128,11 @@ fn is_name(name: &str) -> bool {
 }
 
 /// Returns a text within a value that stands for a variable.
-fn used_in<'v>(value: &'v Node) -> Option<&'v str> {
+fn variable_in<'v>(value: &'v Node) -> Option<&'v str> {
     match value.get_ref() {
         DeValue::String(text) => Some(&**text).filter(|text| variable(text).is_some()),
-        DeValue::Array(entries) => entries.iter().find_map(used_in),
-        DeValue::Table(table) => table.values().find_map(used_in),
+        DeValue::Array(entries) => entries.iter().find_map(variable_in),
+        DeValue::Table(table) => table.values().find_map(variable_in),
         _ => None,
     }
 }

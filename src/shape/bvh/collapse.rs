@@ -57,8 +57,8 @@ impl Builder<'_> {
         let (mut deepest, mut open) = (0, vec![(root, 0)]);
         while let Some((child, level)) = open.pop() {
             deepest = deepest.max(level);
-            if let Err(index) = child.open() {
-                open.extend(self.nodes[index].present().map(|child| (child, level + 1)));
+            if let Err(index) = child.unpack() {
+                open.extend(self.nodes[index].present_children().map(|child| (child, level + 1)));
             }
         }
         deepest

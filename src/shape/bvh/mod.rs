@@ -13,7 +13,7 @@ pub use walk::Visitor;
 
 use crate::math::{Bounds, Ray};
 use build::Builder;
-use node::{Node, Outer};
+use node::{Node, OuterBox};
 use slabs::{Child, NO_ITEM};
 use walk::Walk;
 
@@ -42,7 +42,8 @@ impl Bvh {
 
     /// Builds the tree over items that may have several boxes each. Together, the boxes of an item contain all of it.
     pub fn of_parts<const GROUP: usize>(parts: impl Iterator<Item = (u32, Bounds)>) -> Self {
-        let (owners, boxes): (Vec<u32>, Vec<Outer>) = parts.map(|(item, bounds)| (item, Outer::of(&bounds))).unzip();
+        let (owners, boxes): (Vec<u32>, Vec<OuterBox>) =
+            parts.map(|(item, bounds)| (item, OuterBox::of(&bounds))).unzip();
         let (root, nodes, items) = Builder::build(&boxes, &owners, GROUP);
         Self { root, nodes, items, instructions: Instructions::best() }
     }

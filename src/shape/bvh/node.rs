@@ -17,12 +17,12 @@ pub struct Node {
 
 /// A box in 32-bit numbers that contains a box in 64-bit numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outer {
+pub struct OuterBox {
     pub min: [f32; 3],
     pub max: [f32; 3],
 }
 
-impl Outer {
+impl OuterBox {
     pub const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
 
     pub fn of(bounds: &Bounds) -> Self {
@@ -37,7 +37,7 @@ impl Outer {
     }
 
     /// Returns twice the center along an axis, in 64 bits so that it does not overflow.
-    pub fn middle(&self, axis: usize) -> f64 {
+    pub fn twice_center(&self, axis: usize) -> f64 {
         f64::from(self.min[axis]) + f64::from(self.max[axis])
     }
 
@@ -52,7 +52,7 @@ impl Node {
     pub const EMPTY: Self =
         Self { min: [[f32::INFINITY; WIDTH]; 3], max: [[f32::NEG_INFINITY; WIDTH]; 3], children: [Child(0); WIDTH] };
 
-    pub fn set(&mut self, slot: usize, outer: &Outer, child: Child) {
+    pub fn set(&mut self, slot: usize, outer: &OuterBox, child: Child) {
         for axis in 0..3 {
             self.min[axis][slot] = outer.min[axis];
             self.max[axis][slot] = outer.max[axis];
@@ -61,7 +61,7 @@ impl Node {
     }
 
     /// Returns the children that are present.
-    pub fn present(&self) -> impl Iterator<Item = Child> + '_ {
+    pub fn present_children(&self) -> impl Iterator<Item = Child> + '_ {
         (0..WIDTH).filter(|&slot| self.min[0][slot] <= self.max[0][slot]).map(|slot| self.children[slot])
     }
 
@@ -92,7 +92,7 @@ fn round_up(x: f64) -> f32 {
 /// A node of a binary tree.
 #[derive(Clone, Copy)]
 pub struct Pair {
-    pub outer: Outer,
+    pub outer: OuterBox,
     /// Index of the first of two neighboring nodes, or the start of a range of `Builder::order`.
     pub first: u32,
     /// Number of items in a leaf, 0 for an inner node.
@@ -101,10 +101,10 @@ pub struct Pair {
 
 impl Pair {
     pub fn leaf(range: &Range<usize>) -> Self {
-        Self { outer: Outer::EMPTY, first: range.start as u32, count: range.len() as u32 }
+        Self { outer: OuterBox::EMPTY, first: range.start as u32, count: range.len() as u32 }
     }
 
-    pub fn two(first: usize) -> Self {
-        Self { outer: Outer::EMPTY, first: first as u32, count: 0 }
+    pub fn inner(first: usize) -> Self {
+        Self { outer: OuterBox::EMPTY, first: first as u32, count: 0 }
     }
 }

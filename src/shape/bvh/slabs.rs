@@ -29,7 +29,7 @@ impl Child {
 
     /// Returns the first group and the number of groups of a leaf, or as an error the index of an inner node.
     #[inline(always)]
-    pub fn open(self) -> Result<(usize, usize), usize> {
+    pub fn unpack(self) -> Result<(usize, usize), usize> {
         if self.0 & Self::LEAF == 0 {
             return Err(self.0 as usize);
         }
@@ -62,13 +62,13 @@ const WIDEN: f32 = 1.0 + 6.0 * f32::EPSILON;
 /// Returns the number, limited to the finite range. With an origin that is not finite, the ray would enter the box of
 /// an absent child, which is at infinity.
 #[inline(always)]
-fn finite(number: f32) -> f32 {
+fn clamped_to_finite(number: f32) -> f32 {
     if number.abs() <= f32::MAX { number } else { f32::MAX.copysign(number) }
 }
 
 /// Returns the largest 32-bit distance at which a box may begin that contains something at t or nearer.
 #[inline(always)]
-pub fn reach(t: f64) -> f32 {
+pub fn box_limit(t: f64) -> f32 {
     // The conversion rounds once.
     t as f32 * WIDEN
 }
@@ -81,14 +81,14 @@ impl Slabs {
         let mut slabs =
             Self { backward, entry: [0.0; 3], exit: [0.0; 3], entry_inverse: [0.0; 3], exit_inverse: [0.0; 3] };
         for axis in 0..3 {
-            let near = origin[axis] as f32;
+            let rounded = origin[axis] as f32;
             // The conversion has an error of at most u, and so has the sum. Below the normal range, the error is less
             // than the smallest normal number.
-            let slack = near.abs() * (2.0 * f32::EPSILON) + f32::MIN_POSITIVE;
+            let slack = rounded.abs() * (2.0 * f32::EPSILON) + f32::MIN_POSITIVE;
             let sign = direction[axis] as f32;
             let onward = slack.copysign(sign);
-            slabs.entry[axis] = finite(near + onward);
-            slabs.exit[axis] = finite(near - onward);
+            slabs.entry[axis] = clamped_to_finite(rounded + onward);
+            slabs.exit[axis] = clamped_to_finite(rounded - onward);
             let inverse = direction[axis].recip().abs() as f32;
             let entry = inverse.clamp(f32::MIN_POSITIVE, f32::MAX);
             slabs.entry_inverse[axis] = entry.copysign(sign);

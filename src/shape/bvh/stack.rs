@@ -4,33 +4,33 @@
 use std::mem::MaybeUninit;
 
 /// Number of entries of the stack. No tree needs more.
-pub const STACK: usize = 256;
+pub const STACK_SIZE: usize = 256;
 
 /// Memory for a stack, not filled in advance: that would take longer than a walk through a small tree.
 ///
 /// It is separate from the stack's height. A value of which only some bytes are initialized would be copied whole from
 /// a constant.
-pub struct Room([MaybeUninit<u64>; STACK]);
+pub struct StackMemory([MaybeUninit<u64>; STACK_SIZE]);
 
-impl Room {
+impl StackMemory {
     /// Creates memory in which nothing has been written.
     #[inline(always)]
     pub fn new() -> Self {
-        Self([MaybeUninit::uninit(); STACK])
+        Self([MaybeUninit::uninit(); STACK_SIZE])
     }
 }
 
 /// A stack of numbers: last in, first out.
 pub struct Stack<'a> {
-    entries: &'a mut [MaybeUninit<u64>; STACK],
+    entries: &'a mut [MaybeUninit<u64>; STACK_SIZE],
     height: usize,
 }
 
 impl<'a> Stack<'a> {
     /// Creates an empty stack in the given memory.
     #[inline(always)]
-    pub fn new(room: &'a mut Room) -> Self {
-        Self { entries: &mut room.0, height: 0 }
+    pub fn new(memory: &'a mut StackMemory) -> Self {
+        Self { entries: &mut memory.0, height: 0 }
     }
 
     /// Returns the number of entries.
@@ -43,7 +43,7 @@ impl<'a> Stack<'a> {
     #[inline(always)]
     pub fn pop(&mut self) -> Option<u64> {
         self.height = self.height.checked_sub(1)?;
-        Some(self.written(self.height))
+        Some(self.entry(self.height))
     }
 
     /// Puts a number on top.
@@ -61,14 +61,14 @@ impl<'a> Stack<'a> {
     pub fn push_in_order(&mut self, number: u64, above: usize) {
         self.push(number);
         let mut at = self.height - 1;
-        while at > above && self.written(at - 1) < number {
+        while at > above && self.entry(at - 1) < number {
             self.entries.swap(at, at - 1);
             at -= 1;
         }
     }
 
     #[inline(always)]
-    fn written(&self, at: usize) -> u64 {
+    fn entry(&self, at: usize) -> u64 {
         // SAFETY: entries below a height that was reached have been written, because only `push` raises the height.
         unsafe { self.entries[at].assume_init() }
     }

@@ -43,7 +43,7 @@ pub struct Line {
 /// Where a line meets four triangles.
 pub struct Crossings {
     /// A bit for each triangle that the line meets.
-    pub met: u32,
+    pub hits: u32,
     /// A bit for each triangle that needs more digits: an edge function is 0, or the line starts near the plane.
     pub unsure: u32,
     pub t: [f64; GROUP],
@@ -104,7 +104,7 @@ impl Vectors for Plain {
 
     #[inline(always)]
     fn meet<T: Number>(self, corners: [[&[T; GROUP]; 3]; 3], line: &Line, t_max: f64) -> Option<Crossings> {
-        let (mut met, mut unsure, [mut t, mut v, mut w, mut determinant]) = (0, 0, [[0.0; GROUP]; 4]);
+        let (mut hits, mut unsure, [mut t, mut v, mut w, mut determinant]) = (0, 0, [[0.0; GROUP]; 4]);
         for i in 0..GROUP {
             let mut size = 0.0_f64;
             let [a, b, c] = corners.map(|[x, y, z]| {
@@ -124,11 +124,11 @@ impl Vectors for Plain {
                 let is_near = along.abs() <= line.near * size * size * size * line.shear[2].abs();
                 let is_unsure = is_near || u == 0.0 || v[i] == 0.0 || w[i] == 0.0;
                 t[i] = along / determinant[i];
-                met |= u32::from(!is_unsure && t[i] > 0.0 && t[i] <= t_max) << i;
+                hits |= u32::from(!is_unsure && t[i] > 0.0 && t[i] <= t_max) << i;
                 unsure |= u32::from(is_unsure) << i;
             }
         }
-        (met | unsure != 0).then_some(Crossings { met, unsure, t, v, w, determinant })
+        (hits | unsure != 0).then_some(Crossings { hits, unsure, t, v, w, determinant })
     }
 }
 
@@ -307,12 +307,12 @@ pub mod avx2 {
         let unsure = _mm256_or_pd(_mm256_or_pd(near, on_edge[0]), _mm256_or_pd(on_edge[1], on_edge[2]));
         let ahead = _mm256_cmp_pd::<_CMP_GT_OQ>(t, zero);
         let ahead = _mm256_and_pd(ahead, _mm256_cmp_pd::<_CMP_LE_OQ>(t, _mm256_set1_pd(t_max)));
-        let met = _mm256_andnot_pd(unsure, _mm256_and_pd(inside, ahead));
+        let hits = _mm256_andnot_pd(unsure, _mm256_and_pd(inside, ahead));
         let bits = |lanes: __m256d| _mm256_movemask_pd(lanes) as u32;
         // SAFETY: both the vector and the array are four 64-bit numbers.
         let numbers = |lanes: __m256d| unsafe { transmute::<__m256d, [f64; GROUP]>(lanes) };
         Some(Crossings {
-            met: bits(met),
+            hits: bits(hits),
             unsure: bits(_mm256_and_pd(inside, unsure)),
             t: numbers(t),
             v: numbers(v),

@@ -1,8 +1,8 @@
 //! The walk of a ray through the tree.
 
 use super::node::Node;
-use super::slabs::{Child, Slabs, reach};
-use super::stack::{Room, Stack};
+use super::slabs::{Child, Slabs, box_limit};
+use super::stack::{Stack, StackMemory};
 use super::vectors::{Computation, Vectors, prefetch};
 use crate::math::Ray;
 
@@ -34,17 +34,17 @@ impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
     fn run<V: Vectors>(mut self, vectors: V) {
         let Some(root) = self.root else { return };
         let slabs = Slabs::new(self.ray);
-        let mut limit = reach(self.t_max);
+        let mut limit = box_limit(self.t_max);
         // Children to visit, each with the distance at which its box begins.
-        let mut room = Room::new();
-        let mut stack = Stack::new(&mut room);
+        let mut memory = StackMemory::new();
+        let mut stack = Stack::new(&mut memory);
         let mut current = root;
         loop {
-            match current.open() {
+            match current.unpack() {
                 Ok((first, groups)) => match self.visitor.visit(vectors, first, groups, self.t_max) {
                     Some(t_max) => {
                         self.t_max = t_max;
-                        limit = reach(t_max);
+                        limit = box_limit(t_max);
                     }
                     None => return,
                 },
@@ -56,7 +56,7 @@ impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
                         let slot = (entered.trailing_zeros() & 7) as usize;
                         entered &= entered - 1;
                         let key = keys[slot];
-                        match Child(key as u32).open() {
+                        match Child(key as u32).unpack() {
                             Ok((first, _)) => self.visitor.prefetch(first),
                             Err(index) => prefetch(&self.nodes[index]),
                         }

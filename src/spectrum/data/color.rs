@@ -56,8 +56,8 @@ impl Grid {
 }
 
 fn find(group: &str, name: &str) -> Option<Row> {
-    let whole = name.get(..group.len()).is_some_and(|start| start.eq_ignore_ascii_case(group));
-    if whole { ROWS.find(name) } else { ROWS.find(&format!("{group}{name}")) }
+    let has_group = name.get(..group.len()).is_some_and(|start| start.eq_ignore_ascii_case(group));
+    if has_group { ROWS.find(name) } else { ROWS.find(&format!("{group}{name}")) }
 }
 
 /// Returns the illuminant of that name, ignoring case.

@@ -68,7 +68,7 @@ fn formulas_have_the_indices_that_makers_state() {
 }
 
 #[test]
-fn no_abbe_number_is_told_of_a_glass_that_is_not_known_from_blue_to_red() {
+fn a_glass_not_known_from_blue_to_red_has_no_abbe_number() {
     let vd = |name: &str| super::glass(name).expect("it is in the catalog").v_d();
     // Known up to 644 nm, and from 495 nm on.
     assert_eq!([vd("heptane"), vd("oleic acid")], [None, None]);
@@ -78,7 +78,7 @@ fn no_abbe_number_is_told_of_a_glass_that_is_not_known_from_blue_to_red() {
 }
 
 #[test]
-fn water_absorbs_as_hale_and_querry_have_it() {
+fn water_absorbs_as_hale_and_querry_measured() {
     let k = super::glass("water").and_then(|water| water.extinction(700.0));
     assert_eq!(k, Some(3.35e-8));
 }
@@ -109,7 +109,7 @@ fn formulas_have_no_pole_in_visible_light() {
 }
 
 #[test]
-fn a_bare_name_is_the_first_of_its_rivals() {
+fn a_bare_name_stands_for_its_first_match() {
     assert_eq!(glass("f2").map(|glass| glass.key), Some("schott/F2"));
     assert_eq!(glass_makers("F2"), ["schott/F2", "cdgm/F2", "hikari/F2"]);
     assert_eq!(glass_makers("hikari/f2"), ["hikari/F2"]);

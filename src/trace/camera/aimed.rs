@@ -22,25 +22,25 @@ pub fn albedo<const N: usize>(at: &Interaction<N>) -> f64 {
 /// Roulette ends aimed paths as often as others: what their density takes from the weight does not measure importance.
 pub fn scatter_aimed<const N: usize>(aiming: &Aiming, at: &Interaction<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
     let Interaction { material, context, flat, .. } = at;
-    let divided = aiming.divided(u[0]);
+    let divided = aiming.choose_technique(u[0]);
     shading::scatter(material, context, *flat, [divided.err().unwrap_or(0.5), u[1]], branches);
     if let Ok(aimed) = divided {
         branches.retain(|branch| branch.pdf.is_none());
-        let Some((wi, known)) = aiming.draw([aimed, u[1]]).filter(|(wi, _)| wi.dot(*flat) > 0.0) else { return };
-        let Some((bsdf_cos, own)) = shading::evaluate(material, context, *flat, wi) else { return };
-        let pdf = aiming.pdf_knowing(wi, own, known);
-        if !(own > 0.0 && pdf.is_finite()) {
+        let Some((wi, known_place)) = aiming.draw([aimed, u[1]]).filter(|(wi, _)| wi.dot(*flat) > 0.0) else { return };
+        let Some((bsdf_cos, material_pdf)) = shading::evaluate(material, context, *flat, wi) else { return };
+        let pdf = aiming.pdf_given(wi, material_pdf, known_place);
+        if !(material_pdf > 0.0 && pdf.is_finite()) {
             return;
         }
         let share = bsdf_cos * (1.0 / pdf) as f32;
-        let eta_scale = own / pdf;
+        let eta_scale = material_pdf / pdf;
         branches.push(Branch { wi, share, pdf: Some(pdf), crosses: false, eta_scale, polarization: 0.0 });
         return;
     }
     for branch in branches {
-        if let Some(own) = branch.pdf.filter(|own| *own > 0.0) {
-            let pdf = aiming.pdf(branch.wi, own);
-            let factor = own / pdf;
+        if let Some(material_pdf) = branch.pdf.filter(|material_pdf| *material_pdf > 0.0) {
+            let pdf = aiming.pdf(branch.wi, material_pdf);
+            let factor = material_pdf / pdf;
             branch.share = branch.share * factor as f32;
             branch.eta_scale *= factor;
             branch.pdf = Some(pdf);

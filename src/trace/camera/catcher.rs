@@ -5,7 +5,7 @@ use crate::math::Sampler;
 use crate::scene::Visibility;
 use crate::spectrum::Draw;
 use crate::trace::media::Media;
-use crate::trace::walk::{Among, Path, Polarization};
+use crate::trace::walk::{ObjectSet, Path, Polarization};
 
 /// Returns whether the camera ray of the current sample has hit a shadow catcher.
 pub fn is_seen<const N: usize, P: Polarization<N>>(tracer: &PathTracer<N, P>) -> bool {
@@ -24,10 +24,10 @@ pub fn catch<const N: usize, P: Polarization<N>>(
 ) -> [f64; 3] {
     let with = std::mem::take(&mut tracer.sensor.rgb);
     let (media, before) = (Media::default(), tracer.walker.stats);
-    tracer.trace(&Path { among: Among::Plate, media, ..*path }, draw, sampler);
+    tracer.trace(&Path { object_set: ObjectSet::Plate, media, ..*path }, draw, sampler);
     tracer.walker.stats.count_once(&before);
     let without = std::mem::take(&mut tracer.sensor.rgb);
-    tracer.sensor.forget();
+    tracer.sensor.reset();
     if let Some(layers) = &mut tracer.sensor.layers {
         layers.catch([with, without]);
     }

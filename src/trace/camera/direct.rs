@@ -52,7 +52,7 @@ struct Side<'s, const N: usize> {
     /// Whether lanes have parted on the way from the light to the camera.
     parted: bool,
     /// The surface without the lobe that is left to photons, if there is one, for lights that send photons.
-    beside_photons: Option<&'s Interaction<'s, N>>,
+    without_photon_lobe: Option<&'s Interaction<'s, N>>,
 }
 
 /// A ray to a light, and everything else that its light depends on if the ray is not occluded.
@@ -76,16 +76,16 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     /// that is chosen at random.
     pub fn gather(&self, sampler: &Sampler, sensor: &mut Sensor<N>) -> f64 {
         let (at, parted) = (self.at, self.path.parted);
-        let is_left = self.path.leaves_narrow_to_photons(self.world, at);
-        let beside_photons = is_left.then(|| at.of_lobes(Lobes::DIFFUSE_REFLECTION));
-        let beside_photons = beside_photons.as_ref();
-        let near = Side { normal: at.flat, chance: None, inside: at.boundary.here, parted, beside_photons };
+        let leaves_narrow = self.path.leaves_narrow_to_photons(self.world, at);
+        let without_photon_lobe = leaves_narrow.then(|| at.with_lobes(Lobes::DIFFUSE_REFLECTION));
+        let without_photon_lobe = without_photon_lobe.as_ref();
+        let near = Side { normal: at.flat, chance: None, inside: at.boundary.here, parted, without_photon_lobe };
         if !at.lobes.intersects(Lobes::NON_DELTA_TRANSMISSION) {
             self.gather_side(&near, sampler, sensor);
             return 1.0;
         }
         let chance = if self.all_lights { 1.0 } else { 0.5 };
-        let u = sampler.four_plain(self.path.key, MORE_DIGITS)[2];
+        let u = sampler.get_random_4d(self.path.key, MORE_DIGITS)[2];
         let near = Side { chance: Some(chance), ..near };
         if u < chance {
             self.gather_side(&near, sampler, sensor);
@@ -99,8 +99,9 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
 
     fn gather_side(&self, side: &Side<N>, sampler: &Sampler, sensor: &mut Sensor<N>) {
         let (lights, key) = (&self.world.scene.lights, self.path.key);
-        let mut take = |drawn: SampledLight, [u, v]: [f64; 2]| {
-            let u = if lights[drawn.light].has_parts() { finer(u, sampler.four_plain(key, MORE_DIGITS)[1]) } else { u };
+        let mut sample_light = |drawn: SampledLight, [u, v]: [f64; 2]| {
+            let u =
+                if lights[drawn.light].has_parts() { refine(u, sampler.get_random_4d(key, MORE_DIGITS)[1]) } else { u };
             if let Some(shadow_ray) = self.shadow_ray(side, drawn, [u, v]) {
                 self.trace(side, &shadow_ray, sensor);
             }
@@ -110,16 +111,16 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
                 let u = match number {
                     0 => [self.u[0], self.u[1]],
                     _ => {
-                        let u = sampler.four(key, FURTHER_LIGHTS + number as u32 / 2);
+                        let u = sampler.get_4d(key, FURTHER_LIGHTS + number as u32 / 2);
                         if number % 2 == 0 { [u[0], u[1]] } else { [u[2], u[3]] }
                     }
                 };
-                take(SampledLight { light, probability: 1.0 }, u);
+                sample_light(SampledLight { light, probability: 1.0 }, u);
             }
         } else {
-            let u = finer(self.u[3], sampler.four_plain(key, MORE_DIGITS)[0]);
+            let u = refine(self.u[3], sampler.get_random_4d(key, MORE_DIGITS)[0]);
             if let Some(drawn) = self.world.light_sampler.sample(self.at.point.position, side.normal, u) {
-                take(drawn, [self.u[0], self.u[1]]);
+                sample_light(drawn, [self.u[0], self.u[1]]);
             }
         }
     }
@@ -147,7 +148,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
 
     /// Returns the surface that a light illuminates along a ray: without the lobe that is left to photons, if any.
     fn lit_by<'s>(&'s self, side: &Side<'s, N>, light: LightId, ray: &Ray) -> &'s Interaction<'s, N> {
-        side.beside_photons.filter(|_| self.world.is_found_by_photons(light, ray)).unwrap_or(self.at)
+        side.without_photon_lobe.filter(|_| self.world.is_found_by_photons(light, ray)).unwrap_or(self.at)
     }
 
     /// Passes the light along a ray to the sensor, unless something occludes the light.
@@ -159,13 +160,13 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let context = &at.context;
         let ends = RayEnds { left: self.path.left, light: *object, part: *part };
         let (distance, inside, last_occluder) = (*distance, side.inside, self.last_occluder);
-        let occluders = Occluders::Objects(self.path.among);
+        let occluders = Occluders::Objects(self.path.object_set);
         let segment = VisibilityTest { ray, distance, ends, inside, occluders, last_occluder };
         let wi = ray.direction;
         let light_of = || world.scene.lights[*light].toward(context.draw, wi, sample.uv);
         let mut bsdf_cos = *bsdf_cos;
         let toward = || self.path.polarization.toward(at, wi, &mut bsdf_cos);
-        let arriving = segment.arriving(world, context.draw, toward, light_of);
+        let arriving = segment.arriving_light(world, context.draw, toward, light_of);
         let Some((mut arriving, on_its_way)) = arriving else { return };
         let lit = on_its_way.lit_by(&world.scene.lights[*light], wi, &mut arriving);
         let on_its_way = lit.as_ref().unwrap_or(&on_its_way);
@@ -177,12 +178,12 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
         let light = *light;
         let received = ReceivedLight { source: light, draw: context.draw, lanes, parted: side.parted };
-        let met = FoundLight::new(world, &received, self.excitation);
-        let (rgb, dispersed) = (met.rgb, met.dispersed);
-        let moved = self.path.polarization.moved(at, wi, on_its_way, &met);
+        let found_light = FoundLight::new(world, &received, self.excitation);
+        let (rgb, dispersed) = (found_light.rgb, found_light.dispersed);
+        let moved = self.path.polarization.change_along(at, wi, on_its_way, &found_light);
         let (light, found, bounces) = (Some(light), FoundBy::Sampled, self.path.bounces + 1);
         let first = self.path.first_lobe(world, self.at, wi, side.normal != self.at.flat);
-        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, on_its_way);
+        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &found_light, on_its_way);
     }
 
     /// Returns the factor on a light's emission and the BSDF. If the path's own next direction may hit the light, it is
@@ -196,7 +197,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
 }
 
 /// Adds digits to a random number of the sequences: choosing among many lights uses up its 23 bits.
-fn finer(u: f64, more: f64) -> f64 {
+fn refine(u: f64, more: f64) -> f64 {
     const STEPS: f64 = (1 << 23) as f64;
     ((u * STEPS).floor() + more) / STEPS
 }
@@ -213,7 +214,7 @@ pub fn weight_of_hit(
     let Some(scatter) = scatter else { return 1.0 };
     // Through holes and panes that the path has passed since, the light was sampled from before them.
     let before = Ray { origin: scatter.from, direction: ray.direction };
-    let (ray, intersection) = if scatter.passed { (&before, None) } else { (ray, intersection) };
+    let (ray, intersection) = if scatter.passed_through { (&before, None) } else { (ray, intersection) };
     let pdf = world.scene.lights[light].pdf_li(ray, scatter.normal, intersection);
     let Some(pdf) = pdf else { return 1.0 };
     let probability =
@@ -244,10 +245,10 @@ mod tests {
         let mut upper = 0;
         for sample in 0..4096 {
             let sampler = Sampler::of_pixel(5, [1, 2], sample);
-            let (u, more) = (sampler.four(BranchKey::CAMERA, 1)[0], sampler.four_plain(BranchKey::CAMERA, 1)[0]);
-            assert_eq!(u, finer(u, 0.0));
-            assert!((u..u + 1.0 / f64::from(1 << 23)).contains(&finer(u, more)));
-            upper += u32::from(libm::fmod(finer(u, more) * f64::from(1 << 23), 1.0) >= 0.5);
+            let (u, more) = (sampler.get_4d(BranchKey::CAMERA, 1)[0], sampler.get_random_4d(BranchKey::CAMERA, 1)[0]);
+            assert_eq!(u, refine(u, 0.0));
+            assert!((u..u + 1.0 / f64::from(1 << 23)).contains(&refine(u, more)));
+            upper += u32::from(libm::fmod(refine(u, more) * f64::from(1 << 23), 1.0) >= 0.5);
         }
         assert!((upper as i32 - 2048).abs() < 5 * 32, "{upper} of 4096 lie in the upper halves of steps");
     }

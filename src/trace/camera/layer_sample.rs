@@ -12,7 +12,7 @@ use crate::trace::layers::Layers;
 use crate::trace::photon::{Gathered, PhotonShare, PhotonSpectrum};
 use crate::trace::received_light::ReceivedLight;
 use crate::trace::spectrum_sample::SpectrumSample;
-use crate::trace::walk::{Among, Audit, Interaction, Path, Polarization, shading};
+use crate::trace::walk::{Audit, Interaction, ObjectSet, Path, Polarization, shading};
 
 /// A row of numbers, filled by one camera sample after another.
 pub struct LayerSample<'a, const N: usize> {
@@ -61,18 +61,18 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     /// Adds what an audit of the sample has left open.
-    pub fn keep_audit(&mut self, audit: &Audit<N>, draw: &Draw<N>) {
+    pub fn add_residual(&mut self, audit: &Audit<N>, draw: &Draw<N>) {
         if let Some(white) = &self.world.layers.white {
-            self.world.layers.add_to(Layer::Residual, &mut self.row, audit.left_open(white, draw));
+            self.world.layers.add_to(Layer::Residual, &mut self.row, audit.residual(white, draw));
         }
     }
 
     /// Stores the object that the camera ray hit, `None` if it went through a hole of one, and its share of the weight.
-    pub fn choose(&mut self, met: Option<u32>, chance: f64) {
+    pub fn choose(&mut self, hit_object: Option<u32>, chance: f64) {
         if self.is_aimed {
             return;
         }
-        self.object = met;
+        self.object = hit_object;
         self.chance *= chance;
     }
 
@@ -84,8 +84,8 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         }
     }
 
-    /// Receives light that has reached the sensor, and the lanes by which it arrived. `factor` is that on the lanes: the
-    /// contribution has it already.
+    /// Receives light that has reached the sensor, and the lanes by which it arrived. `factor` is that on the lanes;
+    /// the contribution has it already.
     pub fn receive(
         &mut self,
         contribution: &Contribution,
@@ -122,7 +122,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
                     let responses = (&self.world.responses[light], sample.response(light));
                     let others = stokes.iter().flatten().map(|part| part.map(|x| factor * x));
                     for (component, color) in std::iter::once(rgb).chain(others).enumerate() {
-                        sample.receive_alone(component, wavelength.band(color, responses.0, responses.1));
+                        sample.receive_single(component, wavelength.band(color, responses.0, responses.1));
                     }
                 }
             }
@@ -142,7 +142,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     /// Stores a surface, if it is the first one.
-    pub fn meet<P: Polarization<N>>(
+    pub fn record_surface<P: Polarization<N>>(
         &mut self,
         path: &Path<N, P>,
         at: &Interaction<N>,
@@ -150,16 +150,16 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         sampler: &Sampler,
     ) {
         let layers = &self.world.layers;
-        if path.among == Among::Plate || self.is_aimed {
+        if path.object_set == ObjectSet::Plate || self.is_aimed {
             return;
         }
         // A filter in front of the camera is not a property of a surface.
         let unfiltered = 1.0 / self.world.scene.camera.transmittance();
-        let share = if layers.see_surfaces() { surface.share(path, at, layers.first, unfiltered) } else { 0.0 };
+        let share = if layers.shows_surfaces() { surface.share(path, at, layers.first, unfiltered) } else { 0.0 };
         if share <= 0.0 {
             return;
         }
-        let normal = shading::plain_normal(at.point, at.context.wo);
+        let normal = shading::unbent_normal(at.point, at.context.wo);
         layers.add_to(Layer::Normal, &mut self.row, (share * normal).to_array());
         layers.add_to(Layer::GeometricNormal, &mut self.row, (share * at.flat).to_array());
         // What passes through a pane belongs to it like what glass refracts, unless what is behind counts by itself.
@@ -172,12 +172,12 @@ impl<'a, const N: usize> LayerSample<'a, N> {
             self.share = share;
             let position = at.point.position;
             let object = &self.world.scene.objects[at.object as usize];
-            self.place(Layer::Position, &position.to_array());
-            self.place(Layer::Uv, &object.chart_uv(&surface.surface_hit.hit.intersection, at.point));
+            self.write_layer(Layer::Position, &position.to_array());
+            self.write_layer(Layer::Uv, &object.chart_uv(&surface.surface_hit.hit.intersection, at.point));
         }
     }
 
-    fn place(&mut self, layer: Layer, numbers: &[f64]) {
+    fn write_layer(&mut self, layer: Layer, numbers: &[f64]) {
         if let Some(at) = self.world.layers.at(layer) {
             self.row[at..at + numbers.len()].copy_from_slice(numbers);
         }
@@ -194,7 +194,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     ) -> [f64; 3] {
         let layers = &self.world.layers;
         let (Some(white), Some(_)) = (&layers.white, layers.at(Layer::Albedo)) else { return [0.0; 3] };
-        let [u, v, ..] = sampler.four_plain(path.key, ALBEDO);
+        let [u, v, ..] = sampler.get_random_4d(path.key, ALBEDO);
         let (context, draw) = (&at.context, at.context.draw);
         self.branches.clear();
         shading::scatter(at.material, context, at.flat, [u, v], &mut self.branches);

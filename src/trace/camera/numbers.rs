@@ -27,15 +27,15 @@ pub const MORE_DIGITS: u32 = 3;
 pub const FURTHER_LIGHTS: u32 = 16;
 /// Surfaces of a path whose directions are drawn from a sequence that is well distributed over the pixel's samples.
 /// Behind them the samples see so many different places that plain random numbers, which cost less, are used.
-const SPREAD: u32 = 4;
+const SEQUENCE_SURFACES: u32 = 4;
 
 /// Returns the numbers for a surface that scatters widely: two for the direction to a light, two for the bounce.
 pub fn scatter<const N: usize, P>(sampler: &Sampler, path: &Path<N, P>) -> [f64; 4] {
     if path.key == BranchKey::CAMERA {
-        sampler.pairs_beside(PLACE, path.key, SCATTER)
-    } else if path.vertices <= SPREAD {
-        sampler.four(path.key, SCATTER)
+        sampler.conditional_pairs(PLACE, path.key, SCATTER)
+    } else if path.vertices <= SEQUENCE_SURFACES {
+        sampler.get_4d(path.key, SCATTER)
     } else {
-        sampler.four_plain(path.key, SCATTER)
+        sampler.get_random_4d(path.key, SCATTER)
     }
 }

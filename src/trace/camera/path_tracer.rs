@@ -24,7 +24,7 @@ use crate::trace::highlight::Counted;
 use crate::trace::photon::{GatherPoint, LightVertices, PhotonMap, gather, holds_vertices};
 use crate::trace::received_light::ReceivedLight;
 use crate::trace::walk::{
-    Among, Audit, Excitation, Exciting, FoundLight, Interaction, OutgoingPath, PassThrough, Path, PathKind,
+    Audit, DyeExcitation, Excitation, FoundLight, Interaction, ObjectSet, OutgoingPath, PassThrough, Path, PathKind,
     Polarization, Polarized, ScatterSample, SurfaceHit, Walker, shading, straight,
 };
 use crate::trace::{Method, Polarizing, Transport, World};
@@ -44,7 +44,7 @@ pub struct PathTracer<'a, const N: usize, P: Polarization<N> = Polarized> {
 }
 
 /// Share of the paths found at light vertices that continue if bounces are limited, to measure what limits leave out.
-const ACCOUNTED: f64 = 1.0 / 16.0;
+const MEASURED_SHARE: f64 = 1.0 / 16.0;
 
 impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     pub fn new(world: &'a World) -> Self {
@@ -81,17 +81,17 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     pub fn sample(&mut self, sampler: &Sampler, [x, y]: [i32; 2]) -> Sample {
         let world = self.walker.world;
         let camera = &world.scene.camera;
-        let drawn = |purpose: u32| match world.method.transport {
+        let four_numbers = |purpose: u32| match world.method.transport {
             Transport::Deterministic { .. } => [0.5; 4],
-            Transport::Random { .. } => sampler.four(BranchKey::CAMERA, purpose),
+            Transport::Random { .. } => sampler.get_4d(BranchKey::CAMERA, purpose),
         };
-        let [u, v, wavelength, _] = drawn(numbers::PLACE);
+        let [u, v, wavelength, _] = four_numbers(numbers::PLACE);
         let place = world.scene.film.filter.place([u, v]);
         let film = DVec2::new(f64::from(x), f64::from(y)) + place;
         let is_subtracted = world.scene.film.filter.subtracts(place);
         let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(wavelength));
         let ray = if camera.has_lens() {
-            let [u, v, ..] = drawn(numbers::LENS);
+            let [u, v, ..] = four_numbers(numbers::LENS);
             camera.lens_ray(film, [u, v])
         } else {
             camera.ray(film)
@@ -107,7 +107,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         self.sensor.counted = Counted::ordinary(filter, film, place - 0.5, highlights);
         let first = self.trace(&path, &draw, sampler);
         if let (Some(audit), Some(layers)) = (&self.walker.audit, &mut self.sensor.layers) {
-            layers.keep_audit(audit, &draw);
+            layers.add_residual(audit, &draw);
         }
         if catcher::is_seen(self) {
             let rgb = catcher::catch(self, &path, &draw, sampler);
@@ -128,7 +128,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// Passes all light along the path of a camera ray to the sensor, and returns what the ray hit first.
     pub fn trace(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> Option<SurfacePoint> {
         let mut first = None;
-        self.walker.started = self.walker.stats.rays;
+        self.walker.rays_before = self.walker.stats.rays;
         self.excitations.clear();
         *self.walker.pending.add(|| *path) = *path;
         while let Some(mut path) = self.walker.pending.take() {
@@ -147,22 +147,22 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let world = self.walker.world;
         let excitation = self.excitation(path);
         let draw = excitation.as_ref().map_or(draw, |excitation| &excitation.draw);
-        if path.vertices >= self.walker.transport.last_vertex() {
+        if path.vertices >= self.walker.transport.max_surfaces() {
             self.walker.stats.stopped += path.share(draw);
             return;
         }
-        self.sensor.is_deaf = path.unlit;
+        self.sensor.ignores_light = path.ignores_light;
         let before = self.sensor.rgb;
         let Some(surface_hit) = self.walker.next_hit(path, draw) else {
-            self.background(path, draw);
-            self.sensor.tell(world, path, draw, f64::INFINITY, before);
+            self.receive_sky(path, draw);
+            self.sensor.report_bounce(world, path, draw, f64::INFINITY, before);
             return;
         };
         let boundary = match self.walker.boundary(path, &surface_hit) {
             Ok(boundary) => boundary,
             Err(hidden) => {
                 self.receive(path, draw, EmitterHit::of_surface(world, draw, path, &surface_hit));
-                self.sensor.tell(world, path, draw, surface_hit.hit.intersection.t, before);
+                self.sensor.report_bounce(world, path, draw, surface_hit.hit.intersection.t, before);
                 return self.walker.pass_hidden(path, &surface_hit, &hidden);
             }
         };
@@ -177,30 +177,30 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             through.iter_mut().for_each(|through| through.straight = through.straight.through_holes());
             through = through.filter(|through| !through.straight.holes.is_zero());
         }
-        let may_choose = world.has_mattes && path.surfaces() == 0 && first.is_none();
-        let chance = if may_choose { self.choose(path, draw, sampler, &mut through) } else { 1.0 };
+        let samples_cutout = world.has_mattes && path.surfaces() == 0 && first.is_none();
+        let chance = if samples_cutout { self.choose(path, draw, sampler, &mut through) } else { 1.0 };
         let SurfaceHit { hit, point } = &surface_hit;
         if let Some(PassThrough { straight, polarization }) = through
             && path.throughput.through(straight.share()) == path.throughput
         {
-            *self.walker.pending.add(|| *path) = Path { polarization, ..path.passed(point) };
+            *self.walker.pending.add(|| *path) = Path { polarization, ..path.beyond_surface(point) };
             return;
         }
         path.vertices += 1;
         if is_held_out {
             self.walker.audit.iter_mut().for_each(|audit| audit.end(path, through.as_ref(), draw));
-            return self.walker.pass_in_part(path, point, through.as_ref());
+            return self.walker.pass_partly(path, point, through.as_ref());
         }
         let is_first = path.surfaces() == 1 && first.is_none();
         let met = is_first.then(|| self.first_hit(path, draw, sampler, &surface_hit, through.as_ref(), first));
         self.receive(path, draw, EmitterHit::of_surface(world, draw, path, &surface_hit));
         let surface = Surface { surface_hit: &surface_hit, boundary, through: through.as_ref(), first: met, chance };
         if path.surfaces() > world.method.max_bounces {
-            return self.cut(path, draw, sampler, &surface);
+            return self.end_at_limit(path, draw, sampler, &surface);
         }
         self.scatter(path, draw, sampler, &surface);
         if through.is_none() {
-            self.sensor.tell(world, path, draw, hit.intersection.t, before);
+            self.sensor.report_bounce(world, path, draw, hit.intersection.t, before);
         }
     }
 
@@ -248,22 +248,22 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     }
 
     /// Ends a path that has hit as many surfaces as allowed, except for what passes through.
-    fn cut(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
+    fn end_at_limit(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
         let &Surface { surface_hit, boundary, through, .. } = surface;
         if self.sensor.layers.is_some() {
-            let at = Interaction::new(self.walker.world, draw, &path.arriving(), surface_hit, boundary);
-            self.show(path, &at, surface, sampler);
+            let at = Interaction::new(self.walker.world, draw, &path.incident_ray(), surface_hit, boundary);
+            self.record_surface(path, &at, surface, sampler);
         }
         if !matches!(self.walker.world.scene.material_of(surface_hit.hit.object), Material::Emissive(_)) {
             self.walker.stats.stopped += path.share(draw);
         } else if let Some(audit) = &mut self.walker.audit {
             audit.end(path, through, draw);
         }
-        self.walker.pass_in_part(path, &surface_hit.point, through);
+        self.walker.pass_partly(path, &surface_hit.point, through);
     }
 
     /// Passes the light of the sky to the sensor, at the end of a path that hits nothing.
-    fn background(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
+    fn receive_sky(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
         let world = self.walker.world;
         self.walker.audit.iter_mut().for_each(|audit| audit.end(path, None, draw));
         for &light in &world.scene.infinite_lights {
@@ -277,13 +277,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// Passes light that a path has hit to the sensor, unless that light is found otherwise.
     fn receive(&mut self, path: &Path<N, P>, draw: &Draw<N>, met: Option<EmitterHit<N, P>>) {
         let Some(EmitterHit { light, lanes, normal, polarization }) = met else { return };
-        if self.is_found_otherwise(path, light) {
+        if self.is_found_elsewhere(path, light) {
             return;
         }
         let received = ReceivedLight { source: light, draw, lanes: &lanes, parted: path.parted };
         let excitation = self.excitation(path);
         let met = FoundLight::new(self.walker.world, &received, excitation.as_deref());
-        let (rgb, dispersed, moved) = (met.rgb, met.dispersed, polarization.moved_of_met(&met));
+        let (rgb, dispersed, moved) = (met.rgb, met.dispersed, polarization.change_of_hit(&met));
         let (light, found) = (Some(light), FoundBy::Hit { normal, scattered: path.scatter.is_some() });
         let Path { bounces, first, .. } = *path;
         self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &polarization);
@@ -301,24 +301,24 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if ends && !path.resampled {
             return;
         }
-        let at = Interaction::new(world, draw, &path.arriving(), surface_hit, boundary);
-        self.show(path, &at, surface, sampler);
-        let leaving = PathContinuation { through, is_awaited: first == Some(FirstHit::Beyond), gathers: !ends };
-        match self.excite(path, &at, sampler, leaving.is_awaited) {
+        let at = Interaction::new(world, draw, &path.incident_ray(), surface_hit, boundary);
+        self.record_surface(path, &at, surface, sampler);
+        let continuation = PathContinuation { through, must_pass: first == Some(FirstHit::Beyond), gathers: !ends };
+        match self.follow_dyes(path, &at, sampler, continuation.must_pass) {
             0.0 => {}
-            1.0 => self.scatter_at(path, &at, sampler, leaving),
+            1.0 => self.scatter_at(path, &at, sampler, continuation),
             factor => {
                 let throughput = path.throughput.scaled(factor);
-                self.scatter_at(&Path { throughput, ..*path }, &at, sampler, leaving);
+                self.scatter_at(&Path { throughput, ..*path }, &at, sampler, continuation);
             }
         }
     }
 
     /// Shows a surface to the layers, if any are requested.
     #[inline]
-    fn show(&mut self, path: &Path<N, P>, at: &Interaction<N>, surface: &Surface<N, P>, sampler: &Sampler) {
+    fn record_surface(&mut self, path: &Path<N, P>, at: &Interaction<N>, surface: &Surface<N, P>, sampler: &Sampler) {
         if let Some(layers) = &mut self.sensor.layers {
-            layers.meet(path, at, surface, sampler);
+            layers.record_surface(path, at, surface, sampler);
         }
     }
 
@@ -328,24 +328,24 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         path.excitation.map(|number| self.excitations[number as usize].clone())
     }
 
-    /// Follows what excites the dyes of a surface. Returns the factor on its own scattering, 1 if awaited.
+    /// Follows what excites the dyes of a surface. Returns the factor on its own scattering, 1 if `must_pass`.
     #[inline]
-    fn excite(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler, is_awaited: bool) -> f64 {
+    fn follow_dyes(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler, must_pass: bool) -> f64 {
         let world = self.walker.world;
         let Some(dyes) = world.dyes.as_ref().filter(|dyes| !dyes.of(&world.scene, at.object).is_empty()) else {
             return 1.0;
         };
-        let all = is_awaited || self.walker.follows_all(path, at.context.draw);
+        let all = must_pass || self.walker.follows_all(path, at.context.draw);
         let seen = self.excitation(path);
-        let ways = Exciting { world, dyes, path, at, all, seen: seen.as_deref() }.ways(sampler);
-        for (way, excitation) in ways.of_dyes {
+        let excited = DyeExcitation { world, dyes, path, at, all, seen: seen.as_deref() }.sample_paths(sampler);
+        for (excited_path, excitation) in excited.paths {
             let excitation = Rc::new(excitation);
-            let path = Path { excitation: Some(self.excitations.len() as u32), ..way };
+            let path = Path { excitation: Some(self.excitations.len() as u32), ..excited_path };
             self.excitations.push(excitation.clone());
-            let leaving = PathContinuation { through: None, is_awaited: false, gathers: true };
-            self.scatter_at(&path, &at.of_dye(&dyes.white, &excitation.draw), sampler, leaving);
+            let continuation = PathContinuation { through: None, must_pass: false, gathers: true };
+            self.scatter_at(&path, &at.as_dye(&dyes.white, &excitation.draw), sampler, continuation);
         }
-        ways.scattered
+        excited.scatter_factor
     }
 
     /// Samples the lights where a surface scatters widely, gathers photons there if `gathers`, and continues the path.
@@ -354,7 +354,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         path: &Path<N, P>,
         at: &Interaction<N>,
         sampler: &Sampler,
-        PathContinuation { through, is_awaited, gathers }: PathContinuation<N, P>,
+        PathContinuation { through, must_pass, gathers }: PathContinuation<N, P>,
     ) {
         let (world, draw) = (self.walker.world, at.context.draw);
         let material = at.material;
@@ -376,8 +376,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
                 self.gather_photons(path, at, sampler);
             }
             let resampled = goes_on && self.resample(path, at, sampler);
-            let (pdf, from, normal, passed) = (0.0, at.point.position, at.flat, false);
-            scatter = Some(ScatterSample { pdf, from, normal, chance, all_lights, passed, resampled });
+            let (pdf, from, normal, passed_through) = (0.0, at.point.position, at.flat, false);
+            scatter = Some(ScatterSample { pdf, from, normal, chance, all_lights, passed_through, resampled });
         }
         self.walker.branches.clear();
         match &aiming {
@@ -385,20 +385,20 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             None => shading::scatter(material, &at.context, at.flat, [u[2], u[3]], &mut self.walker.branches),
         }
         self.walker.polarize(path, at);
-        self.walker.account(path, at, through.map(|through| &through.straight));
+        self.walker.report_to_audit(path, at, through.map(|through| &through.straight));
         let (scatter, is_seen) = (scatter.as_ref(), path.is_seen);
-        let departure = OutgoingPath::new(world, path, at);
-        let mut departure = OutgoingPath { scatter, through, is_awaited, is_seen, ..departure };
+        let outgoing = OutgoingPath::new(world, path, at);
+        let mut outgoing = OutgoingPath { scatter, through, must_pass, is_seen, ..outgoing };
         if !goes_on {
-            self.walker.keep_single(&departure);
+            self.walker.keep_delta_branches(&outgoing);
         }
-        self.walker.follow(&mut departure, sampler);
+        self.walker.follow(&mut outgoing, sampler);
     }
 
     /// Passes the light of light vertices to the sensor, if the path hits a diffuse surface. Returns whether it did.
     fn resample(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) -> bool {
-        let is_asked = path.among == Among::All && !path.resampled;
-        let Some(vertices) = self.light_vertices.filter(|_| is_asked) else { return false };
+        let is_needed = path.object_set == ObjectSet::All && !path.resampled;
+        let Some(vertices) = self.light_vertices.filter(|_| is_needed) else { return false };
         let world = self.walker.world;
         if !at.lobes.is_diffuse() {
             return false;
@@ -423,18 +423,19 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if !scatter.resampled || !holds_vertices(self.walker.world, surface_hit.hit.object, &surface_hit.point) {
             return false;
         }
-        let chance = vertices.complement((surface_hit.point.position - scatter.from).length_squared());
-        let u = sampler.four_plain(path.key, numbers::COMPLEMENT);
+        let chance = vertices.continuation_probability((surface_hit.point.position - scatter.from).length_squared());
+        let u = sampler.get_random_4d(path.key, numbers::COMPLEMENT);
         let ends = u[0] >= chance;
         if !ends {
             return false;
         }
-        let rest = vertices.rest;
-        let goes_on = if self.walker.audit.is_some() { 1.0 } else { rest.unwrap_or(ACCOUNTED) };
+        let rest_chance = vertices.rest_chance;
+        let goes_on = if self.walker.audit.is_some() { 1.0 } else { rest_chance.unwrap_or(MEASURED_SHARE) };
         // A pilot with an observer only needs to know about light.
-        let is_asked = rest.is_some() || (self.walker.world.method.has_limits() && self.sensor.observer.is_none());
-        if is_asked && u[1] < goes_on {
-            (path.resampled, path.unlit) = (true, rest.is_none());
+        let is_needed =
+            rest_chance.is_some() || (self.walker.world.method.has_limits() && self.sensor.observer.is_none());
+        if is_needed && u[1] < goes_on {
+            (path.resampled, path.ignores_light) = (true, rest_chance.is_none());
             path.throughput = path.throughput.scaled(1.0 / goes_on);
         } else {
             self.walker.audit.iter_mut().for_each(|audit| audit.end(path, None, draw));
@@ -444,17 +445,17 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
 
     /// Passes the light of photons to the sensor, at a place that the path has reached by way of other surfaces.
     fn gather_photons(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) {
-        if let Some(photons) = self.photons.filter(|_| path.among == Among::All) {
-            let is_told = self.sensor.layers.is_some();
+        if let Some(photons) = self.photons.filter(|_| path.object_set == ObjectSet::All) {
+            let has_layers = self.sensor.layers.is_some();
             // At the first surface, each photon has its own lobe and number of bounces.
-            let apart = is_told && (path.bounces == 0 || self.walker.world.layers.tell_photons_apart());
+            let split = has_layers && (path.bounces == 0 || self.walker.world.layers.needs_photon_details());
             let excitation = self.excitation(path);
             let excitation = excitation.as_deref();
-            let around = GatherPoint { world: self.walker.world, path, at, excitation };
-            let within = |kernel, apart| gather(photons, kernel, &around, sampler, apart);
-            let gathered = within(&photons.kernel, apart);
-            if let Some(half) = &photons.half {
-                self.sensor.blur_by(gathered.all.rgb, within(half, false).all.rgb);
+            let center = GatherPoint { world: self.walker.world, path, at, excitation };
+            let gather_with = |kernel, split| gather(photons, kernel, &center, sampler, split);
+            let gathered = gather_with(&photons.kernel, split);
+            if let Some(half_blur) = &photons.half_blur {
+                self.sensor.add_blur(gathered.all.rgb, gather_with(half_blur, false).all.rgb);
             }
             let draw = excitation.map_or(at.context.draw, |dye| &dye.seen_by);
             self.sensor.receive_gathered(&gathered, draw);
@@ -465,10 +466,10 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     }
 
     /// Returns whether the light along a path's ray to a light is found by photons, or was estimated at light vertices.
-    fn is_found_otherwise(&self, path: &Path<N, P>, light: LightId) -> bool {
+    fn is_found_elsewhere(&self, path: &Path<N, P>, light: LightId) -> bool {
         let world = self.walker.world;
-        let is_left = path.left_to_photons && path.among == Among::All;
-        (is_left && world.is_found_by_photons(light, &path.ray))
+        let is_left_to_photons = path.left_to_photons && path.object_set == ObjectSet::All;
+        (is_left_to_photons && world.is_found_by_photons(light, &path.ray))
             || self.found_at(path).is_some_and(|at| at.carry(world, light, &path.ray))
     }
 

@@ -11,7 +11,7 @@ use crate::trace::World;
 use crate::trace::contribution::{Contribution, FoundBy};
 use crate::trace::photon::{LightVertex, LightVertices};
 use crate::trace::received_light::ReceivedLight;
-use crate::trace::walk::{Among, FoundLight, Interaction, Occluders, Path, Polarization, VisibilityTest, shading};
+use crate::trace::walk::{FoundLight, Interaction, ObjectSet, Occluders, Path, Polarization, VisibilityTest, shading};
 
 /// A path at a diffuse surface.
 pub struct Resampling<'a, const N: usize, P> {
@@ -26,7 +26,7 @@ pub struct Resampling<'a, const N: usize, P> {
 impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
     /// Passes the light of two vertices to the sensor, if they are visible.
     pub fn gather(&self, sampler: &Sampler, sensor: &mut Sensor<N>) {
-        let [a, b, c, d] = sampler.four(self.path.key, VERTEX);
+        let [a, b, c, d] = sampler.get_4d(self.path.key, VERTEX);
         // Both are chosen first, so that the memory of one is read while the other is chosen.
         let chosen = [[a, b], [c, d]].map(|u| {
             let chosen = self.vertices.choose(self.at.point.position, self.at.flat, u);
@@ -47,9 +47,9 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         let to = vertex.position;
         let origin = at.point.leave((to - at.point.position).try_normalize()?).origin;
         let way = to - origin;
-        let squared = way.length_squared();
+        let distance_squared = way.length_squared();
         let direction = unit(way.try_normalize()?);
-        let (ray, distance) = (Ray { origin, direction }, squared.sqrt());
+        let (ray, distance) = (Ray { origin, direction }, distance_squared.sqrt());
         let cos = -direction.dot(vertex.flat);
         if direction.dot(at.flat) <= 0.0 || cos <= 0.0 {
             return None;
@@ -57,24 +57,24 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         let (mut bsdf_cos, _) = shading::evaluate(at.material, &at.context, at.flat, direction)?;
         // The ray ends before the surface of the vertex. That surface lies within its error of the point, and the ray,
         // whose direction is rounded, passes the point within a few rounding errors of the distance.
-        let short = (vertex.error + gamma(8) * distance) / cos;
+        let margin = (vertex.error + gamma(8) * distance) / cos;
         let ends = RayEnds { left: self.path.left, ..RayEnds::default() };
-        let (distance, inside, last_occluder) = (distance - short, at.boundary.here, self.last_occluder);
-        let occluders = Occluders::Objects(Among::All);
+        let (distance, inside, last_occluder) = (distance - margin, at.boundary.here, self.last_occluder);
+        let occluders = Occluders::Objects(ObjectSet::All);
         let segment = VisibilityTest { ray: &ray, distance, ends, inside, occluders, last_occluder };
         let toward = || self.path.polarization.toward(at, direction, &mut bsdf_cos);
-        let (arriving, on_its_way) = segment.arriving(world, at.context.draw, toward, || vertex.leaving)?;
-        let factor = factor * cos / (squared + self.vertices.near_squared());
+        let (arriving, on_its_way) = segment.arriving_light(world, at.context.draw, toward, || vertex.leaving)?;
+        let factor = factor * cos / (distance_squared + self.vertices.near_squared());
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
         let received = ReceivedLight { source: vertex.light, draw: at.context.draw, lanes, parted: self.path.parted };
-        let met = FoundLight::new(world, &received, None);
-        let rgb = met.rgb;
-        let moved = self.path.polarization.moved(at, direction, &on_its_way, &met);
+        let found_light = FoundLight::new(world, &received, None);
+        let rgb = found_light.rgb;
+        let moved = self.path.polarization.change_along(at, direction, &on_its_way, &found_light);
         let (bounces, dispersed) = (self.path.bounces + 1 + vertex.surfaces, self.path.parted || vertex.parted);
         let first = self.path.first_lobe(world, at, direction, false);
         let light = Some(vertex.light);
         let found = if vertex.is_of_photon { FoundBy::Gathered } else { FoundBy::Connected };
-        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &on_its_way);
+        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &found_light, &on_its_way);
         Some(())
     }
 }

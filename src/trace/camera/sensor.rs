@@ -36,7 +36,7 @@ pub enum SensorEvent<'a> {
 /// The sensor that receives all light that camera samples find, one sample after another.
 pub struct Sensor<'a, const N: usize> {
     /// Whether it ignores what arrives.
-    pub is_deaf: bool,
+    pub ignores_light: bool,
     /// Which light counts, and how much.
     pub counted: Counted<'a>,
     /// What the current sample has received.
@@ -53,7 +53,7 @@ pub struct Sensor<'a, const N: usize> {
 impl<'a, const N: usize> Sensor<'a, N> {
     pub fn new() -> Self {
         let (rgb, moved, blur) = ([0.0; 3], 0.0, [0.0; 3]);
-        Self { is_deaf: false, counted: Counted::ALL, rgb, moved, blur, observer: None, layers: None }
+        Self { ignores_light: false, counted: Counted::ALL, rgb, moved, blur, observer: None, layers: None }
     }
 
     /// Decides which light of the next paths counts.
@@ -66,7 +66,7 @@ impl<'a, const N: usize> Sensor<'a, N> {
     #[inline]
     pub fn receive<P: Polarization<N>>(&mut self, contribution: Contribution, light: &FoundLight<N, P>, polarized: &P) {
         let factor = self.counted.factor(contribution.light, contribution.bounces);
-        if self.is_deaf || factor == 0.0 {
+        if self.ignores_light || factor == 0.0 {
             return;
         }
         let contribution = if factor == 1.0 { contribution } else { contribution.scaled(factor) };
@@ -80,30 +80,30 @@ impl<'a, const N: usize> Sensor<'a, N> {
                 }
             }
         }
-        self.receive_all(&contribution);
+        self.receive_contribution(&contribution);
     }
 
     /// Receives the light of gathered photons.
     pub fn receive_gathered(&mut self, gathered: &Gathered<N>, draw: &Draw<N>) {
-        if self.is_deaf || self.counted.is_aimed() {
+        if self.ignores_light || self.counted.is_aimed() {
             return;
         }
         if let Some(layers) = &mut self.layers {
             layers.receive_gathered(gathered, draw);
         }
-        self.receive_all(&gathered.all);
+        self.receive_contribution(&gathered.all);
     }
 
     /// Estimates the blur of gathered light, by comparison with a kernel that blurs half as much.
-    pub fn blur_by(&mut self, gathered: [f64; 3], by_half: [f64; 3]) {
-        if self.is_deaf || self.counted.is_aimed() {
+    pub fn add_blur(&mut self, gathered: [f64; 3], by_half: [f64; 3]) {
+        if self.ignores_light || self.counted.is_aimed() {
             return;
         }
         add(&mut self.blur, std::array::from_fn(|i| 2.0 * (gathered[i] - by_half[i])));
     }
 
     #[inline]
-    fn receive_all(&mut self, all: &Contribution) {
+    fn receive_contribution(&mut self, all: &Contribution) {
         add(&mut self.rgb, all.rgb);
         self.moved += all.moved;
         if let Some(observer) = self.observer {
@@ -113,7 +113,7 @@ impl<'a, const N: usize> Sensor<'a, N> {
 
     /// Tells an observer what a bounce found at a distance; `before` is what the sensor had received before.
     #[inline]
-    pub fn tell<P: Polarization<N>>(
+    pub fn report_bounce<P: Polarization<N>>(
         &self,
         world: &World,
         path: &Path<N, P>,
@@ -126,12 +126,12 @@ impl<'a, const N: usize> Sensor<'a, N> {
         {
             let light = world.amount(std::array::from_fn(|i| self.rgb[i] - before[i]));
             let (direction, distance) = (path.ray.direction, distance + (path.ray.origin - from).length());
-            let weight = path.weight(draw) * f64::from(path.aimed);
+            let weight = path.weight(draw) * f64::from(path.aiming_factor);
             observer(SensorEvent::Bounce(Bounce { from, normal, direction, distance, light, weight }));
         }
     }
 
-    pub fn forget(&mut self) {
+    pub fn reset(&mut self) {
         (self.rgb, self.moved, self.blur) = ([0.0; 3], 0.0, [0.0; 3]);
     }
 

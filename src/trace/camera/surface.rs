@@ -47,7 +47,7 @@ pub struct PathContinuation<'m, const N: usize, P> {
     /// What passes through.
     pub through: Option<&'m PassThrough<N, P>>,
     /// Whether what passes through is always followed, because the camera ray hits something behind the holes.
-    pub is_awaited: bool,
+    pub must_pass: bool,
     /// Whether photons are gathered.
     pub gathers: bool,
 }

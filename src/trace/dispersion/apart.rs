@@ -9,38 +9,38 @@ use crate::trace::World;
 
 /// Lengths of the steps to a ray's neighbors, in pixels. With the longer one, the neighbors on both sides of an edge
 /// are as far apart as two colors that are just not seen apart.
-const STEPS: [f64; 2] = [0.5 * SEEN_PIXELS, 0.1 * SEEN_PIXELS];
+const NEIGHBOR_STEPS: [f64; 2] = [0.5 * SEEN_PIXELS, 0.1 * SEEN_PIXELS];
 /// Number of places along each side of a pixel whose light is examined.
 const PLACES: u32 = 6;
 
 /// Returns how many pixels apart two colors show what lies behind; `None` if an edge is too close to tell.
-pub fn colors_apart(rays: &CameraRays, at: DVec2, first: &ColorWalk) -> Option<f64> {
+pub fn color_separation(rays: &CameraRays, at: DVec2, first: &ColorWalk) -> Option<f64> {
     let second = rays.walk(at, 1);
-    let far = apart_by(rays, STEPS[0], at, [first, &second]);
-    (far >= SEEN_PIXELS || apart_by(rays, STEPS[1], at, [first, &second]) < SEEN_PIXELS).then_some(far)
+    let far = pixel_separation(rays, NEIGHBOR_STEPS[0], at, [first, &second]);
+    (far >= SEEN_PIXELS || pixel_separation(rays, NEIGHBOR_STEPS[1], at, [first, &second]) < SEEN_PIXELS).then_some(far)
 }
 
 /// Returns the share of a pixel's light that dispersion pulls apart. Facets far smaller than a pixel count by area.
-pub fn share_apart(rays: &CameraRays, middle: DVec2) -> f64 {
+pub fn separated_share(rays: &CameraRays, middle: DVec2) -> f64 {
     let place = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES) - 0.5;
     let share = |i: u32| {
         let at = middle + DVec2::new(place(i % PLACES), place(i / PLACES));
         let walks = [0, 1].map(|lane| rays.walk(at, lane));
         let [first, second] = &walks;
-        let part = || {
+        let is_separated = || {
             // After other surfaces, light comes from elsewhere: among such facets, neighbors carry no information.
-            see_something(rays, [first, second]) && first.legs.len() != second.legs.len()
-                || apart_by(rays, STEPS[1], at, [first, second]) >= SEEN_PIXELS
+            may_differ(rays, [first, second]) && first.legs.len() != second.legs.len()
+                || pixel_separation(rays, NEIGHBOR_STEPS[1], at, [first, second]) >= SEEN_PIXELS
         };
-        if first.dispersive && part() { first.weight } else { 0.0 }
+        if first.dispersive && is_separated() { first.weight } else { 0.0 }
     };
     (0..PLACES * PLACES).map(share).sum::<f64>() / f64::from(PLACES * PLACES)
 }
 
 /// Returns whether no walk is lost, and what they show may differ.
-fn see_something(rays: &CameraRays, walks: [&ColorWalk; 2]) -> bool {
+fn may_differ(rays: &CameraRays, walks: [&ColorWalk; 2]) -> bool {
     let lost = walks.iter().any(|walk| walk.weight == 0.0);
-    let out = walks.iter().all(|walk| walk.is_out());
+    let out = walks.iter().all(|walk| walk.leaves_scene());
     // If skies are uniform, all walks that leave the scene see the same.
     !(lost || out && skies_seen(rays.colors.world).all(Light::is_even_sky))
 }
@@ -49,24 +49,25 @@ fn see_something(rays: &CameraRays, walks: [&ColorWalk; 2]) -> bool {
 ///
 /// The walks of a ray's neighbors, one step aside, show how far a pixel reaches. Both colors are compared at one
 /// distance, so that an edge behind the glass that only one of them misses does not count.
-fn apart_by(rays: &CameraRays, step: f64, at: DVec2, walks: [&ColorWalk; 2]) -> f64 {
+fn pixel_separation(rays: &CameraRays, step: f64, at: DVec2, walks: [&ColorWalk; 2]) -> f64 {
     let [first, second] = walks;
-    if !see_something(rays, walks) {
+    if !may_differ(rays, walks) {
         return 0.0;
     }
     let distance = walks.map(ColorWalk::length).into_iter().find(|length| length.is_finite());
-    let apart = between(first, second, distance);
-    let beside = |x: f64, y: f64| rays.walk(at + DVec2::new(x, y) * step, 0);
-    let ways = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
-    let stretch = ways.map(|(x, y)| between(first, &beside(x, y), distance)).into_iter().fold(0.0, f64::max);
+    let separation = distance_between(first, second, distance);
+    let neighbor = |x: f64, y: f64| rays.walk(at + DVec2::new(x, y) * step, 0);
+    let offsets = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
+    let stretch =
+        offsets.map(|(x, y)| distance_between(first, &neighbor(x, y), distance)).into_iter().fold(0.0, f64::max);
     // Parallel rays stay parallel behind flat glass. There a pixel has the angle that the camera gives it.
-    let least = if distance.is_none() { rays.colors.world.scene.camera.pixel_angle() * step } else { 0.0 };
-    let stretch = if stretch > 0.0 { stretch } else { least };
-    if stretch > 0.0 { apart / (stretch / step) } else { 0.0 }
+    let min_stretch = if distance.is_none() { rays.colors.world.scene.camera.pixel_angle() * step } else { 0.0 };
+    let stretch = if stretch > 0.0 { stretch } else { min_stretch };
+    if stretch > 0.0 { separation / (stretch / step) } else { 0.0 }
 }
 
 /// Returns how far apart two walks are at a distance along their last segments, or the angle between these.
-fn between(a: &ColorWalk, b: &ColorWalk, distance: Option<f64>) -> f64 {
+fn distance_between(a: &ColorWalk, b: &ColorWalk, distance: Option<f64>) -> f64 {
     let (Some(a), Some(b)) = (a.last(), b.last()) else { return 0.0 };
     match distance {
         Some(distance) => (a.at(distance) - b.at(distance)).length(),

@@ -10,9 +10,9 @@ use crate::trace::{World, media};
 
 /// Number of surfaces after which a ray is given up. Total reflection keeps one in six rays in a diamond for more than
 /// 24.
-const LONGEST: usize = 64;
+const MAX_SURFACES: usize = 64;
 /// Share of the light above which a fainter branch counts: half of what glass mirrors.
-const LEAST: f64 = 0.02;
+const MIN_SHARE: f64 = 0.02;
 /// Rough reflectance of a glossy surface.
 const GLOSS: f64 = 0.05;
 /// Use of the random numbers at a surface.
@@ -54,7 +54,7 @@ pub struct ColorWalk {
 
 impl ColorWalk {
     /// Returns whether it leaves the scene.
-    pub fn is_out(&self) -> bool {
+    pub fn leaves_scene(&self) -> bool {
         self.length().is_infinite()
     }
 
@@ -69,23 +69,23 @@ impl ColorWalk {
     }
 
     /// Decides whether a branch with this share of the light is taken; `is_inside` means inside a dispersive body.
-    fn takes(&mut self, share: f64, is_inside: bool, choice: FollowedBranch) -> bool {
+    fn choose_branch(&mut self, share: f64, is_inside: bool, choice: FollowedBranch) -> bool {
         let (weight, fainter) = (self.weight, share.min(1.0 - share));
-        let forks = |fork: &mut f64| {
-            let is_first = *fork == 0.0 && fainter >= LEAST;
+        let record_fork = |fork: &mut f64| {
+            let is_first = *fork == 0.0 && fainter >= MIN_SHARE;
             if is_first {
                 *fork = weight * fainter;
             }
             is_first
         };
-        let (first, inside) = (forks(&mut self.fork), is_inside && forks(&mut self.fork_inside));
-        let turns = match choice {
+        let (first, inside) = (record_fork(&mut self.fork), is_inside && record_fork(&mut self.fork_inside));
+        let takes_fainter = match choice {
             FollowedBranch::Brighter => false,
             FollowedBranch::FainterFirst => first,
             FollowedBranch::FainterInside => inside,
         };
-        self.weight *= if turns { fainter } else { 1.0 - fainter };
-        (share > 0.5) != turns
+        self.weight *= if takes_fainter { fainter } else { 1.0 - fainter };
+        (share > 0.5) != takes_fainter
     }
 }
 
@@ -116,7 +116,7 @@ pub struct Colors<'a> {
 
 impl Colors<'_> {
     /// Returns whether a medium has two different indices.
-    pub fn disperses(&self, glass: &Dielectric<Table>) -> bool {
+    pub fn is_dispersive(&self, glass: &Dielectric<Table>) -> bool {
         let index: [f64; 4] = self.draw.read_exact(&glass.index);
         index[0] != index[1]
     }
@@ -135,7 +135,7 @@ impl Colors<'_> {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
         let mut walk = ColorWalk { legs, met, weight: 1.0, media, ..ColorWalk::default() };
         let mut key = BranchKey::CAMERA;
-        for _ in 0..LONGEST {
+        for _ in 0..MAX_SURFACES {
             let hit = match is_from_camera {
                 true => self.world.scene.intersect_seen(&ray, None),
                 false => self.world.scene.intersect(&ray),
@@ -144,8 +144,13 @@ impl Colors<'_> {
             let Some(met) = hit else { return walk };
             let surface_hit = SurfaceHit::new(self.world, &ray, met);
             key = key.child(0);
-            let at =
-                WalkSurface { ray: &ray, surface_hit: &surface_hit, u: sampler.four_plain(key, SURFACE), lane, choice };
+            let at = WalkSurface {
+                ray: &ray,
+                surface_hit: &surface_hit,
+                u: sampler.get_random_4d(key, SURFACE),
+                lane,
+                choice,
+            };
             match self.next(&mut walk, &at) {
                 Next::Straight => ray = surface_hit.point.leave(ray.direction),
                 Next::Toward(direction) => (ray, is_from_camera) = (surface_hit.point.leave(direction), false),
@@ -171,8 +176,8 @@ impl Colors<'_> {
             walk.surfaces += u32::from(matches!(next, Next::Toward(_)));
             return next;
         }
-        let shines = self.world.scene.objects[at.surface_hit.hit.object as usize].light.is_some();
-        if shines { Next::End } else { Next::Lost }
+        let is_light = self.world.scene.objects[at.surface_hit.hit.object as usize].light.is_some();
+        if is_light { Next::End } else { Next::Lost }
     }
 
     /// Returns how a walk continues at a surface, whatever the bounce limit.
@@ -181,25 +186,29 @@ impl Colors<'_> {
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(&surface_hit.point, wo);
         let inside = walk.media.inside(&world.scene);
-        if walk.takes(straight::holes(world, draw, ray, inside, surface_hit)[0].into(), false, choice) {
+        if walk.choose_branch(straight::holes(world, draw, ray, inside, surface_hit)[0].into(), false, choice) {
             return Next::Straight;
         }
         match world.scene.material_of(surface_hit.hit.object) {
-            Material::Dielectric(glass) => self.meet_glass(walk, at, glass),
+            Material::Dielectric(glass) => self.next_at_glass(walk, at, glass),
             Material::Mirror(_) => Next::Toward(reflect(wo, normal)),
             Material::Thin(pane) => {
                 let here = media::index(&world.scene, draw, inside)[0];
                 let one = pane.reflectance_of_one_surface(draw, 0, here, wo.dot(normal));
                 // The reflectance of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
                 let mirrored = 2.0 * one / (1.0 + one);
-                if walk.takes(mirrored, false, choice) { Next::Toward(reflect(wo, normal)) } else { Next::Straight }
+                if walk.choose_branch(mirrored, false, choice) {
+                    Next::Toward(reflect(wo, normal))
+                } else {
+                    Next::Straight
+                }
             }
             Material::Conductor(metal) => match metal.roughness.surface() {
                 None => Next::Toward(reflect(wo, normal)),
                 // Both colors use the same facet, as if there were no others.
                 Some(surface) => mirrored(surface, wo, normal, [u[2], u[3]]).map_or(Next::Lost, Next::Toward),
             },
-            material if material.lobes().has_delta() && walk.takes(GLOSS, false, choice) => {
+            material if material.lobes().has_delta() && walk.choose_branch(GLOSS, false, choice) => {
                 Next::Toward(reflect(wo, normal))
             }
             material => {
@@ -210,7 +219,7 @@ impl Colors<'_> {
     }
 
     /// Returns how a walk continues at the surface of a clear body.
-    fn meet_glass(&self, walk: &mut ColorWalk, at: &WalkSurface, glass: &Dielectric<Table>) -> Next {
+    fn next_at_glass(&self, walk: &mut ColorWalk, at: &WalkSurface, glass: &Dielectric<Table>) -> Next {
         let WalkSurface { ray, surface_hit: SurfaceHit { hit, point }, u, lane, choice } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(point, wo);
@@ -231,8 +240,8 @@ impl Colors<'_> {
         let first = Interface::new(indices[0][0], indices[1][0], wo.dot(facet));
         let chance = if first.transmittance == 0.0 { interface.reflectance } else { first.reflectance };
         let inside = indices[0][0] != indices[0][1];
-        let mirrors = n1 != n2 && (walk.takes(chance, inside, choice) || interface.transmittance == 0.0);
-        let (direction, side) = if mirrors {
+        let is_reflected = n1 != n2 && (walk.choose_branch(chance, inside, choice) || interface.transmittance == 0.0);
+        let (direction, side) = if is_reflected {
             (reflect(wo, facet), 1.0)
         } else {
             walk.media = walk.media.beyond(&boundary);

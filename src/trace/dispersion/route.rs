@@ -62,7 +62,7 @@ pub struct RouteWalk {
     pub steps: Vec<Step>,
     pub weight: f64,
     /// What is left of the light, with the effect of the steps.
-    pub left: Lanes<4>,
+    pub throughput: Lanes<4>,
     pub scattered: u32,
     /// Number of surfaces hit, without those that it passes through: `max_bounces` limits it.
     pub surfaces: u32,
@@ -71,17 +71,18 @@ pub struct RouteWalk {
 impl RouteWalk {
     pub fn from_camera(world: &World, ray: Ray) -> Self {
         let (media, key, steps) = (world.media_at_camera(&ray), BranchKey::CAMERA, Vec::new());
-        let (weight, left, is_from_camera) = (1.0, Lanes::ONE, true);
-        Self { ray, is_from_camera, media, key, steps, weight, left, scattered: 0, surfaces: 0 }
+        let (weight, throughput, is_from_camera) = (1.0, Lanes::ONE, true);
+        Self { ray, is_from_camera, media, key, steps, weight, throughput, scattered: 0, surfaces: 0 }
     }
 
-    pub fn brightest(&self) -> f32 {
-        self.left.0.into_iter().fold(0.0, f32::max)
+    pub fn max_throughput(&self) -> f32 {
+        self.throughput.0.into_iter().fold(0.0, f32::max)
     }
 
     /// Returns the route after a step that leaves `tint` of each lane, times a factor.
     pub fn after(&self, step: Option<Step>, tint: Lanes<4>, factor: f64) -> Self {
-        let mut next = Self { left: self.left * tint * factor as f32, weight: self.weight * factor, ..self.clone() };
+        let mut next =
+            Self { throughput: self.throughput * tint * factor as f32, weight: self.weight * factor, ..self.clone() };
         next.steps.extend(step);
         next
     }

@@ -3,19 +3,19 @@
 use super::route::{ROUTES_NM, Route, RouteEvent, RouteVertex, RouteWalk, Step};
 use crate::light::{Light, LightId};
 use crate::material::{Facets, Interface, Material, reflect};
-use crate::math::{DVec3, Ray, Sampler, cosine_about};
+use crate::math::{DVec3, Ray, Sampler, sample_cosine_about};
 use crate::spectrum::{Draw, Lanes, Table};
 use crate::trace::walk::{SurfaceHit, shading, straight};
 use crate::trace::{World, media};
 
 /// Maximum number of surfaces that are hit for one pixel.
-const SURFACES: usize = 256;
+const MAX_SURFACES: usize = 256;
 /// Routes that leave less than this share of a pixel's brightest one are not followed.
-const FAINT: f32 = 1e-3;
+const MIN_SHARE: f32 = 1e-3;
 /// Maximum number of diffuse surfaces of a route.
-const SCATTERED: u32 = 2;
+const MAX_SCATTERED: u32 = 2;
 /// Maximum number of lights that are sampled.
-const LIGHTS: usize = 8;
+const MAX_LIGHTS: usize = 8;
 
 /// Follows the routes of one pixel, the brightest first.
 pub struct RouteWalker<'a> {
@@ -36,20 +36,21 @@ impl<'a> RouteWalker<'a> {
     pub fn walk(&mut self, ray: Ray) -> usize {
         self.pending.push(RouteWalk::from_camera(self.world, ray));
         let mut best = 0.0_f32;
-        for met in 0..SURFACES {
-            let order = |a: &usize, b: &usize| self.pending[*a].brightest().total_cmp(&self.pending[*b].brightest());
-            let Some(next) = (0..self.pending.len()).max_by(order) else { return met };
+        for count in 0..MAX_SURFACES {
+            let order =
+                |a: &usize, b: &usize| self.pending[*a].max_throughput().total_cmp(&self.pending[*b].max_throughput());
+            let Some(next) = (0..self.pending.len()).max_by(order) else { return count };
             let walk = self.pending.swap_remove(next);
-            if walk.brightest() <= FAINT * best {
-                return met;
+            if walk.max_throughput() <= MIN_SHARE * best {
+                return count;
             }
-            let (known, left) = (self.found.len(), walk.brightest());
-            self.meet(walk);
-            if self.found.len() > known {
+            let (found_before, left) = (self.found.len(), walk.max_throughput());
+            self.advance(walk);
+            if self.found.len() > found_before {
                 best = best.max(left);
             }
         }
-        SURFACES
+        MAX_SURFACES
     }
 
     fn record(&mut self, walk: &RouteWalk, light: LightId) {
@@ -58,7 +59,7 @@ impl<'a> RouteWalker<'a> {
     }
 
     /// Follows a route to the next surface, and finds how it continues.
-    fn meet(&mut self, walk: RouteWalk) {
+    fn advance(&mut self, walk: RouteWalk) {
         let world = self.world;
         let hit = match walk.is_from_camera {
             true => world.scene.intersect_seen(&walk.ray, None),
@@ -67,8 +68,8 @@ impl<'a> RouteWalker<'a> {
         let Some(hit) = hit else {
             for &id in &world.scene.infinite_lights {
                 let is_hidden = walk.is_from_camera && world.scene.hidden_lights.contains(&id);
-                let is_beside = matches!(&world.scene.lights[id], Light::Sun(sun) if sun.pdf(&walk.ray).is_none());
-                if !is_hidden && !is_beside {
+                let misses_sun = matches!(&world.scene.lights[id], Light::Sun(sun) if sun.pdf(&walk.ray).is_none());
+                if !is_hidden && !misses_sun {
                     self.record(&walk, id);
                 }
             }
@@ -78,8 +79,8 @@ impl<'a> RouteWalker<'a> {
         let object = &world.scene.objects[hit.object as usize];
         let surface_hit = SurfaceHit::new(world, &walk.ray, hit);
         let point = &surface_hit.point;
-        let u = self.sampler.four_plain(walk.key, 0);
-        if self.passes(&walk, &surface_hit, u[3]) {
+        let u = self.sampler.get_random_4d(walk.key, 0);
+        if self.passes_hole(&walk, &surface_hit, u[3]) {
             let (ray, key) = (point.leave(walk.ray.direction), walk.key.child(0));
             self.pending.push(RouteWalk { ray, key, ..walk });
             return;
@@ -91,25 +92,25 @@ impl<'a> RouteWalker<'a> {
             self.record(&walk, light);
         }
         let material = world.scene.material_of(hit.object);
-        let [flat, normal] = shading::normals(point, -walk.ray.direction);
+        let [geometric, normal] = shading::normals(point, -walk.ray.direction);
         let uv = object.uv(&hit.intersection, point);
-        let part = self.part(material, uv, u[2]);
+        let part = self.choose_part(material, uv, u[2]);
         let at = RouteVertex { walk: &walk, material: object.material, point, normal, uv, part, u };
-        self.leave(&at, material.with_parts()[part], flat);
+        self.leave(&at, material.with_parts()[part], geometric);
     }
 
     /// Continues from a surface in all ways that light may take.
-    fn leave(&mut self, at: &RouteVertex, material: &Material<Table>, flat: DVec3) {
+    fn leave(&mut self, at: &RouteVertex, material: &Material<Table>, geometric: DVec3) {
         let RouteVertex { walk, normal, uv, .. } = *at;
         let world = self.world;
         match material {
             Material::Mirror(mirror) => {
                 let tint = self.draw.read_at(&mirror.reflectance, uv);
-                self.mirrored(at, normal, tint, 1.0);
+                self.follow_reflection(at, normal, tint, 1.0);
             }
             Material::Conductor(metal) => {
                 let facet = metal.roughness.surface().map_or(normal, |surface| at.facet(surface.facets()));
-                self.mirrored(at, facet, Lanes::ONE, 1.0);
+                self.follow_reflection(at, facet, Lanes::ONE, 1.0);
             }
             Material::Thin(pane) => {
                 let inside = media::index(&world.scene, &self.draw, walk.media.inside(&world.scene));
@@ -118,31 +119,31 @@ impl<'a> RouteWalker<'a> {
                 let through = (1.0 - r) * (1.0 - r);
                 let crossed = at.step(RouteEvent::Crossed);
                 let straight = walk.after(Some(crossed), tint, through);
-                self.go_straight(at, straight);
+                self.continue_straight(at, straight);
                 // Mirrored by the first surface, and by the second.
                 let back = reflect(at.wo(), normal);
-                self.go_on(at, walk.after(None, Lanes::ONE, r), back, 1);
+                self.continue_toward(at, walk.after(None, Lanes::ONE, r), back, 1);
                 let behind = walk.after(Some(crossed), tint, r * through).after(Some(crossed), tint, 1.0);
-                self.go_on(at, behind, back, 2);
+                self.continue_toward(at, behind, back, 2);
             }
-            Material::Dielectric(glass) => self.glass(
+            Material::Dielectric(glass) => self.follow_glass(
                 at,
                 [&glass.reflectance, &glass.transmittance],
                 glass.roughness.interface().map(|rough| rough.facets()),
             ),
             Material::Diffuse(diffuse) => {
                 let tint = self.draw.read_at(&diffuse.reflectance, uv);
-                self.scattered(at, flat, tint, 1.0);
+                self.scattered(at, geometric, tint, 1.0);
             }
             Material::Plastic(plastic) => {
                 let index = self.draw.read_exact(&plastic.index)[1];
                 let r = Interface::new(1.0, index, at.wo().dot(normal)).reflectance;
-                self.go_on(at, walk.after(None, Lanes::ONE, r), reflect(at.wo(), normal), 1);
+                self.continue_toward(at, walk.after(None, Lanes::ONE, r), reflect(at.wo(), normal), 1);
                 let tint = self.draw.read_at(&plastic.reflectance, uv);
-                self.scattered(at, flat, tint, 1.0 - r);
+                self.scattered(at, geometric, tint, 1.0 - r);
             }
             Material::Polarizer(_) | Material::Retarder(_) => {
-                self.go_straight(at, walk.after(None, Lanes::ONE, 1.0));
+                self.continue_straight(at, walk.after(None, Lanes::ONE, 1.0));
             }
             Material::Emissive(_) | Material::Mix(_) | Material::Mask(_) => {}
         }
@@ -159,106 +160,106 @@ impl<'a> RouteWalker<'a> {
     }
 
     /// Decides at random whether a hole lets the route pass.
-    fn passes(&self, walk: &RouteWalk, surface_hit: &SurfaceHit, u: f64) -> bool {
+    fn passes_hole(&self, walk: &RouteWalk, surface_hit: &SurfaceHit, u: f64) -> bool {
         let inside = walk.media.inside(&self.world.scene);
         u < straight::holes(self.world, &self.draw, &walk.ray, inside, surface_hit)[1].into()
     }
 
     /// Returns the part of the material that is hit, at random if there are several.
-    fn part(&self, material: &Material<Table>, uv: [f64; 2], u: f64) -> usize {
+    fn choose_part(&self, material: &Material<Table>, uv: [f64; 2], u: f64) -> usize {
         match material {
             Material::Mix(mix) => {
                 let amount = f64::from(self.draw.read_at(&mix.amount, uv)[1]);
                 let [first, second] = mix.materials.each_ref().map(|part| part.material());
                 if u < amount {
-                    1 + first.with_parts().len() + self.part(second, uv, u / amount)
+                    1 + first.with_parts().len() + self.choose_part(second, uv, u / amount)
                 } else {
-                    1 + self.part(first, uv, (u - amount) / (1.0 - amount))
+                    1 + self.choose_part(first, uv, (u - amount) / (1.0 - amount))
                 }
             }
-            Material::Mask(mask) => 1 + self.part(mask.material.material(), uv, u),
+            Material::Mask(mask) => 1 + self.choose_part(mask.material.material(), uv, u),
             _ => 0,
         }
     }
 
     /// Continues from a surface in a direction in which light is mirrored or scattered, or crosses a body's surface.
-    fn go_on(&mut self, at: &RouteVertex, next: RouteWalk, direction: DVec3, number: usize) {
-        if let Some(surfaces) = self.one_more(at.walk) {
-            self.follow(at, RouteWalk { is_from_camera: false, surfaces, ..next }, direction, number);
+    fn continue_toward(&mut self, at: &RouteVertex, next: RouteWalk, direction: DVec3, number: usize) {
+        if let Some(surfaces) = self.count_surface(at.walk) {
+            self.enqueue(at, RouteWalk { is_from_camera: false, surfaces, ..next }, direction, number);
         }
     }
 
     /// Returns the number of surfaces of a route plus one; `None` if that is beyond the bounce limit.
-    fn one_more(&self, walk: &RouteWalk) -> Option<u32> {
+    fn count_surface(&self, walk: &RouteWalk) -> Option<u32> {
         (walk.surfaces < self.world.method.max_bounces).then_some(walk.surfaces + 1)
     }
 
     /// Continues straight on as if nothing were there.
-    fn go_straight(&mut self, at: &RouteVertex, next: RouteWalk) {
-        self.follow(at, next, at.walk.ray.direction, 0);
+    fn continue_straight(&mut self, at: &RouteVertex, next: RouteWalk) {
+        self.enqueue(at, next, at.walk.ray.direction, 0);
     }
 
-    fn follow(&mut self, at: &RouteVertex, next: RouteWalk, direction: DVec3, number: usize) {
-        if next.brightest() > 0.0 {
+    fn enqueue(&mut self, at: &RouteVertex, next: RouteWalk, direction: DVec3, number: usize) {
+        if next.max_throughput() > 0.0 {
             let (ray, key) = (at.point.leave(direction), at.walk.key.child(number));
             self.pending.push(RouteWalk { ray, key, ..next });
         }
     }
 
-    fn mirrored(&mut self, at: &RouteVertex, facet: DVec3, tint: Lanes<4>, factor: f64) {
+    fn follow_reflection(&mut self, at: &RouteVertex, facet: DVec3, tint: Lanes<4>, factor: f64) {
         let step = at.step(RouteEvent::Reflected(at.wo().dot(facet).abs().min(1.0)));
         let next = at.walk.after(Some(step), tint, factor);
-        self.go_on(at, next, reflect(at.wo(), facet), 0);
+        self.continue_toward(at, next, reflect(at.wo(), facet), 0);
     }
 
-    fn glass(&mut self, at: &RouteVertex, [reflectance, transmittance]: [&Table; 2], facets: Option<&Facets>) {
+    fn follow_glass(&mut self, at: &RouteVertex, [reflectance, transmittance]: [&Table; 2], facets: Option<&Facets>) {
         let (world, walk) = (self.world, at.walk);
         let (boundary, _) = walk.media.at_surface(&world.scene, at.material, at.point, walk.ray.direction);
         let [n1, n2] = boundary.sides().map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
         let crossed = RouteWalk { media: walk.media.beyond(&boundary), ..walk.clone() };
         if boundary.here == boundary.beyond {
-            return self.go_straight(at, crossed);
+            return self.continue_straight(at, crossed);
         }
         let tint = self.draw.read_at(transmittance, at.uv);
         let step = Some(at.step(RouteEvent::Crossed));
         if n1 == n2 {
-            return self.go_on(at, crossed.after(step, tint, 1.0), walk.ray.direction, 0);
+            return self.continue_toward(at, crossed.after(step, tint, 1.0), walk.ray.direction, 0);
         }
         let (wo, facet) = (at.wo(), facets.map_or(at.normal, |facets| at.facet(facets)));
         let interface = Interface::new(n1, n2, wo.dot(facet));
         if interface.transmittance > 0.0 {
             let next = crossed.after(step, tint, interface.transmittance);
-            self.go_on(at, next, interface.refract(wo, facet), 0);
+            self.continue_toward(at, next, interface.refract(wo, facet), 0);
         }
         let mirrored = walk.after(
             Some(at.step(RouteEvent::Reflected(wo.dot(facet)))),
             self.draw.read_at(reflectance, at.uv),
             interface.reflectance,
         );
-        self.go_on(at, mirrored, reflect(wo, facet), 1);
+        self.continue_toward(at, mirrored, reflect(wo, facet), 1);
     }
 
     /// Follows the light that a surface scatters: directly from the lights, and from anywhere.
-    fn scattered(&mut self, at: &RouteVertex, flat: DVec3, tint: Lanes<4>, factor: f64) {
-        let Some(surfaces) = self.one_more(at.walk) else { return };
+    fn scattered(&mut self, at: &RouteVertex, geometric: DVec3, tint: Lanes<4>, factor: f64) {
+        let Some(surfaces) = self.count_surface(at.walk) else { return };
         let next = at.walk.after(Some(at.step(RouteEvent::Scattered)), tint, factor);
         let next = RouteWalk { scattered: next.scattered + 1, surfaces, ..next };
-        for id in 0..self.world.scene.lights.len().min(LIGHTS) {
-            self.aim(at, &next, flat, id);
+        for id in 0..self.world.scene.lights.len().min(MAX_LIGHTS) {
+            self.connect_to_light(at, &next, geometric, id);
         }
-        if next.scattered < SCATTERED && self.world.method.diffuse_bounces > 0 {
-            let direction = cosine_about(flat, [at.u[0], at.u[1]]);
-            self.go_on(at, next, direction, 3);
+        if next.scattered < MAX_SCATTERED && self.world.method.diffuse_bounces > 0 {
+            let direction = sample_cosine_about(geometric, [at.u[0], at.u[1]]);
+            self.continue_toward(at, next, direction, 3);
         }
     }
 
     /// Follows light directly from a light, through everything that lets it through.
-    fn aim(&mut self, at: &RouteVertex, walk: &RouteWalk, normal: DVec3, id: LightId) {
+    fn connect_to_light(&mut self, at: &RouteVertex, walk: &RouteWalk, normal: DVec3, id: LightId) {
         let (world, light) = (self.world, &self.world.scene.lights[id]);
         let Some(sample) = light.sample_li(at.point, normal, [at.u[1], at.u[0]]) else { return };
         let mut walk = RouteWalk { ray: sample.ray, ..walk.clone() };
         let mut left = sample.distance;
-        for _ in 0..SURFACES {
+        for _ in 0..MAX_SURFACES {
             let Some(hit) = world.scene.nearest(&walk.ray, left, &|object| sample.object != Some(object)) else {
                 let walk = self.inside(walk, left);
                 return self.record(&walk, id);
@@ -268,10 +269,10 @@ impl<'a> RouteWalker<'a> {
             let object = &world.scene.objects[hit.object as usize];
             let surface_hit = SurfaceHit::new(world, &walk.ray, hit);
             let point = &surface_hit.point;
-            if !self.passes(&walk, &surface_hit, at.u[2]) {
+            if !self.passes_hole(&walk, &surface_hit, at.u[2]) {
                 let uv = object.uv(&hit.intersection, point);
                 let material = world.scene.material_of(hit.object);
-                let part = self.part(material, uv, at.u[2]);
+                let part = self.choose_part(material, uv, at.u[2]);
                 let transmittance = match material.with_parts()[part] {
                     Material::Thin(pane) => pane.transmittance(),
                     Material::Dielectric(glass) => Some(&glass.transmittance),

@@ -2,15 +2,15 @@
 
 use super::color_walk::{ColorWalk, Colors};
 use crate::material::Material;
-use crate::math::{Bounds, DVec3, Ray, neighbors};
+use crate::math::{Bounds, DVec3, Ray, group_neighbors};
 use crate::shape::Ball;
 
 /// Dispersion over fewer pixels is not seen.
 pub const SEEN_PIXELS: f64 = 0.2;
 /// Maximum number of boxes of either kind. If there are more objects, neighbors share a box.
-const MOST: usize = 48;
+const MAX_BOXES: usize = 48;
 /// How much wider than the rays around it a beam is taken to be: what they enclose may bulge out between them.
-const WIDER: f64 = 1.25;
+const BEAM_MARGIN: f64 = 1.25;
 
 /// A box around an object, or around neighbors.
 pub struct SearchTarget {
@@ -28,7 +28,7 @@ pub struct Targets {
     /// The targets, dispersive ones first.
     pub all: Vec<SearchTarget>,
     /// The target that each object belongs to, if any.
-    of_object: Vec<Option<usize>>,
+    target_of_object: Vec<Option<usize>>,
 }
 
 impl Targets {
@@ -37,21 +37,21 @@ impl Targets {
         let mut kinds: [Vec<(u32, Bounds)>; 2] = Default::default();
         for (object, bounds) in (0..).zip(scene.objects.iter()).filter_map(|(i, o)| Some((i, o.shape.bounds()?))) {
             match scene.material_of(object) {
-                Material::Dielectric(glass) => kinds[usize::from(!colors.disperses(glass))].push((object, bounds)),
+                Material::Dielectric(glass) => kinds[usize::from(!colors.is_dispersive(glass))].push((object, bounds)),
                 Material::Mirror(_) | Material::Thin(_) | Material::Conductor(_) => kinds[1].push((object, bounds)),
                 _ => {}
             }
         }
-        let (mut all, mut of_object) = (Vec::new(), vec![None; scene.objects.len()]);
+        let (mut all, mut target_of_object) = (Vec::new(), vec![None; scene.objects.len()]);
         for (mut objects, dispersive) in kinds.into_iter().zip([true, false]) {
             let mut add = |group: &[(u32, Bounds)]| {
-                group.iter().for_each(|(object, _)| of_object[*object as usize] = Some(all.len()));
-                let bounds = group.iter().map(|of| of.1).fold(Bounds::EMPTY, Bounds::union);
+                group.iter().for_each(|(object, _)| target_of_object[*object as usize] = Some(all.len()));
+                let bounds = group.iter().map(|object| object.1).fold(Bounds::EMPTY, Bounds::union);
                 all.push(SearchTarget { bounds, dispersive });
             };
-            neighbors(&mut objects, MOST, &|object| object.1.center(), &mut add);
+            group_neighbors(&mut objects, MAX_BOXES, &|object| object.1.center(), &mut add);
         }
-        Self { all, of_object }
+        Self { all, target_of_object }
     }
 
     /// Returns the first target that a beam may touch and that not all of its rays have hit; `None` if there is none.
@@ -59,18 +59,19 @@ impl Targets {
     /// Rays that passed the same objects are one beam on their next segment, as wide as they are apart. For a ray that
     /// goes its own way, only the width of a beam that nothing has bent is known: `width` is its angle.
     pub fn touched(&self, walks: &[ColorWalk], width: f64) -> Option<usize> {
-        let met = |walk: &ColorWalk, target: usize| {
+        let has_hit = |walk: &ColorWalk, target: usize| {
             walk.met
                 .iter()
                 .chain(walk.end.iter().map(|end| &end.1))
-                .any(|&of| self.of_object[of as usize] == Some(target))
+                .any(|&object| self.target_of_object[object as usize] == Some(target))
         };
-        let open: Vec<usize> = (0..self.all.len()).filter(|&i| !walks.iter().all(|walk| met(walk, i))).collect();
-        if open.is_empty() {
+        let candidates: Vec<usize> =
+            (0..self.all.len()).filter(|&i| !walks.iter().all(|walk| has_hit(walk, i))).collect();
+        if candidates.is_empty() {
             return None;
         }
         let beams = beams(walks, width);
-        open.into_iter().find(|&target| beams.iter().any(|beam| beam.touches(&self.all[target].bounds)))
+        candidates.into_iter().find(|&target| beams.iter().any(|beam| beam.touches(&self.all[target].bounds)))
     }
 }
 
@@ -90,16 +91,16 @@ fn beams(walks: &[ColorWalk], width: f64) -> Vec<Beam> {
     for leg in 0..longest {
         let on_leg: Vec<&ColorWalk> = walks.iter().filter(|walk| walk.legs.len() > leg).collect();
         for (number, walk) in on_leg.iter().enumerate() {
-            let along = |other: &&&ColorWalk| other.met[..leg] == walk.met[..leg];
-            if on_leg[..number].iter().any(|other| along(&other)) {
+            let shares_beam = |other: &&&ColorWalk| other.met[..leg] == walk.met[..leg];
+            if on_leg[..number].iter().any(|other| shares_beam(&other)) {
                 continue;
             }
             let ray = walk.legs[leg].0;
             let mut beam = Beam { ray, length: 0.0, radius: 0.0, slope: 0.0 };
             let mut count = 0;
-            for (other, length) in on_leg[number..].iter().filter(along).map(|other| other.legs[leg]) {
-                beam.radius = beam.radius.max(WIDER * (other.origin - ray.origin).length());
-                beam.slope = beam.slope.max(WIDER * (other.direction - ray.direction).length());
+            for (other, length) in on_leg[number..].iter().filter(shares_beam).map(|other| other.legs[leg]) {
+                beam.radius = beam.radius.max(BEAM_MARGIN * (other.origin - ray.origin).length());
+                beam.slope = beam.slope.max(BEAM_MARGIN * (other.direction - ray.direction).length());
                 beam.length = beam.length.max(length);
                 count += 1;
             }

@@ -19,10 +19,10 @@
 use crate::trace::replicates::{Products, REPLICATES};
 
 /// Ratio of the squared blur of folds to its estimate.
-const FOLDS: f64 = 1.93;
+const FOLD_RATIO: f64 = 1.93;
 
 /// Returns the sum of all squares, as expected and at most in 95 of 100 cases, by products of replicates' estimates.
-pub fn squares_of_blur(Products(products): &Products, student: f64) -> [f64; 2] {
+pub fn squared_blur(Products(products): &Products, student: f64) -> [f64; 2] {
     let count = REPLICATES as f64;
     // For each replicate, the sum of its products with the others.
     let with_others: [f64; REPLICATES] = std::array::from_fn(|i| products[i].iter().sum::<f64>() - products[i][i]);
@@ -32,5 +32,5 @@ pub fn squares_of_blur(Products(products): &Products, student: f64) -> [f64; 2] 
     let mean = without.iter().sum::<f64>() / count;
     let spread = without.iter().map(|square| (square - mean) * (square - mean)).sum::<f64>();
     let variance = spread * (count - 1.0) / count;
-    [expected, FOLDS * (expected + student * variance.sqrt())]
+    [expected, FOLD_RATIO * (expected + student * variance.sqrt())]
 }

@@ -24,15 +24,15 @@ impl Coverage {
     }
 
     /// Whether all object numbers are less than `objects`.
-    pub fn is_among(&self, objects: usize) -> bool {
-        self.0.iter().flatten().all(|covered| (covered.object as usize) < objects)
+    pub fn is_valid_for(&self, objects: usize) -> bool {
+        self.0.iter().flatten().all(|entry| (entry.object as usize) < objects)
     }
 
     /// Counts a camera sample that hit an object.
     pub fn add(&mut self, pixel: usize, object: u32) {
         let pixel = &mut self.0[pixel];
-        match pixel.iter_mut().find(|covered| covered.object == object) {
-            Some(covered) => covered.samples += 1,
+        match pixel.iter_mut().find(|entry| entry.object == object) {
+            Some(entry) => entry.samples += 1,
             None => pixel.push(ObjectSamples { object, samples: 1 }),
         }
     }

@@ -6,7 +6,7 @@ use super::coverage::Coverage;
 use crate::film::{Layer, LayerImage, RANKS, Sample, SampleWeights, SpectralImage, polarization, stored};
 use crate::trace::camera::SampleRow;
 use crate::trace::contribution::add;
-use crate::trace::layers::{CatcherLight, Layers, OF_A_HALF, STOKES};
+use crate::trace::layers::{CatcherLight, HALF_VALUES, Layers, STOKES_VALUES};
 use crate::trace::replicates::REPLICATES;
 use crate::trace::spectrum_sample::Spectrum;
 
@@ -36,25 +36,25 @@ impl LayerSums {
     }
 
     /// Whether it has as many numbers of each kind as another one.
-    pub fn is_shaped_as(&self, other: &Self) -> bool {
+    pub fn has_same_shape(&self, other: &Self) -> bool {
         let lengths = |sums: &Self| (sums.rows.each_ref().map(Vec::len), sums.depths.len(), sums.covered.pixels());
         lengths(self) == lengths(other)
     }
 
     /// Adds a sample of a pixel: its contribution to the image and to the layers. `early` samples are those of the
     /// first half. Each half is spread as evenly as all samples are, which every other sample would not be.
-    pub fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, left: &SampleRow) {
+    pub fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, sample_row: &SampleRow) {
         let row = &mut self.rows[usize::from(sample.is_subtracted)][pixel * layers.numbers..][..layers.numbers];
-        if let Some(object) = left.object.filter(|_| !layers.ids.is_empty() && !sample.is_subtracted) {
+        if let Some(object) = sample_row.object.filter(|_| !layers.ids.is_empty() && !sample.is_subtracted) {
             self.covered.add(pixel, object);
         }
-        let left = left.row;
-        layers.add_caught(row, left);
+        let sample_row = sample_row.row;
+        layers.add_caught(row, sample_row);
         let nearer = !sample.is_subtracted && sample.depth.is_some_and(|depth| depth < self.depths[pixel]);
         if let (true, Some(depth)) = (nearer, sample.depth) {
             self.depths[pixel] = depth;
         }
-        for &layer in &layers.wanted {
+        for &layer in &layers.requested {
             let Some(at) = layers.at(layer) else { continue };
             match layer {
                 Layer::Samples | Layer::Shadow => {}
@@ -63,20 +63,20 @@ impl LayerSums {
                 Layer::HalfA | Layer::HalfB => {
                     if early == (layer == Layer::HalfA) {
                         add(&mut row[at..], sample.rgb);
-                        row[at + OF_A_HALF - 1] += 1.0;
+                        row[at + HALF_VALUES - 1] += 1.0;
                     }
                 }
                 Layer::Position | Layer::Uv => {
                     let size = layer.channels().len();
                     if nearer {
-                        row[at..at + size].copy_from_slice(&left[at..at + size]);
+                        row[at..at + size].copy_from_slice(&sample_row[at..at + size]);
                     }
                 }
                 Layer::Lights | Layer::Polarization => {
-                    let size = if layer == Layer::Lights { 3 * layers.groups.len() } else { STOKES };
-                    row[at..at + size].iter_mut().zip(&left[at..]).for_each(|(sum, more)| *sum += more);
+                    let size = if layer == Layer::Lights { 3 * layers.groups.len() } else { STOKES_VALUES };
+                    row[at..at + size].iter_mut().zip(&sample_row[at..]).for_each(|(sum, more)| *sum += more);
                 }
-                _ => add(&mut row[at..], std::array::from_fn(|i| left[at + i])),
+                _ => add(&mut row[at..], std::array::from_fn(|i| sample_row[at + i])),
             }
         }
     }
@@ -95,14 +95,14 @@ impl LayerSums {
 
     /// Returns the sums of luminance that shadow catchers send to a pixel, if there are any.
     pub fn caught(&self, layers: &Layers, pixel: usize) -> Option<CatcherLight<f64>> {
-        let of = |row: &[f64]| layers.caught(row, &[], 1.0).map(|caught| layers.luminance_caught(&caught));
-        layers.catches().then(|| self.rows(layers, pixel)[0]).and_then(of)
+        let of = |row: &[f64]| layers.caught(row, &[], 1.0).map(|caught| layers.caught_luminance(&caught));
+        layers.has_catchers().then(|| self.rows(layers, pixel)[0]).and_then(of)
     }
 }
 
 /// The weights of sums over photons in an image.
 #[derive(Clone, Copy, Debug)]
-pub struct SplatCounts {
+pub struct SplatWeights {
     /// In all layers but the halves.
     pub image: f64,
     /// In the halves, relative to `image`: 1 each where as many samples have photons in both.
@@ -118,7 +118,7 @@ pub struct PixelSums<'a> {
     /// The row of what photons contribute, which is no sum over samples; empty where they contribute nothing.
     pub splatted: &'a [f64],
     /// The weights of the photons relative to the samples.
-    pub counts: SplatCounts,
+    pub splat_weights: SplatWeights,
     /// The variance of the mean, if replicates measure it.
     pub variance: Option<[f64; 3]>,
     /// The sums of the samples that were kept, both added and subtracted, and their weights.
@@ -132,12 +132,12 @@ pub struct PixelSums<'a> {
 /// Returns the images of the layers, as yet without values.
 pub fn images(layers: &Layers) -> Vec<LayerImage> {
     let image = |layer: Layer, name: String| LayerImage { layer, name, values: Vec::new() };
-    let of_layer = |&layer: &Layer| match layer {
+    let images_of = |&layer: &Layer| match layer {
         Layer::Lights => layers.groups.iter().map(|name| image(layer, name.clone())).collect(),
         _ if layer.is_matte() => (0..RANKS / 2).map(|i| image(layer, format!("{}{i:02}", layer.name()))).collect(),
         _ => vec![image(layer, layer.name().to_owned())],
     };
-    layers.wanted.iter().flat_map(of_layer).collect()
+    layers.requested.iter().flat_map(images_of).collect()
 }
 
 /// Returns the spectra, as yet without values, if requested.
@@ -150,20 +150,20 @@ impl PixelSums<'_> {
     /// Writes the pixel's values into its tile's values of each layer.
     pub fn write(&self, layers: &Layers, images: &mut [Vec<f32>]) {
         let mut images = images.iter_mut();
-        for &layer in &layers.wanted {
+        for &layer in &layers.requested {
             if let Some((_, ids)) = layers.ids.iter().find(|(matte, _)| *matte == layer) {
                 let ranks = self.covered.ranks(self.place, ids);
                 for (two, image) in ranks.chunks_exact(2).zip(images.by_ref()) {
                     let coverage = |samples: u32| (f64::from(samples) / self.weights.added()) as f32;
-                    let [(a, of_a), (b, of_b)] = [two[0], two[1]];
-                    let values = [f32::from_bits(a), coverage(of_a), f32::from_bits(b), coverage(of_b)];
+                    let [(a, samples_a), (b, samples_b)] = [two[0], two[1]];
+                    let values = [f32::from_bits(a), coverage(samples_a), f32::from_bits(b), coverage(samples_b)];
                     image[4 * self.place..4 * self.place + 4].copy_from_slice(&values);
                 }
                 continue;
             }
             let at = layers.at(layer).unwrap_or_default();
-            let several = if layer == Layer::Lights { layers.groups.len() } else { 1 };
-            for (number, image) in images.by_ref().take(several).enumerate() {
+            let image_count = if layer == Layer::Lights { layers.groups.len() } else { 1 };
+            for (number, image) in images.by_ref().take(image_count).enumerate() {
                 let size = layer.channels().len();
                 let values = &mut image[self.place * size..][..size];
                 if layer == Layer::Shadow {
@@ -178,9 +178,9 @@ impl PixelSums<'_> {
                     continue;
                 }
                 for (channel, value) in values.iter_mut().enumerate() {
-                    let told = self.value(layer, at + 3 * number, channel);
+                    let mean = self.value(layer, at + 3 * number, channel);
                     *value =
-                        stored(if layer == Layer::Albedo { told.clamp(0.0, layers.film_white[channel]) } else { told });
+                        stored(if layer == Layer::Albedo { mean.clamp(0.0, layers.film_white[channel]) } else { mean });
                 }
             }
         }
@@ -209,15 +209,15 @@ impl PixelSums<'_> {
     /// Returns the mean of a channel over a part of the samples, from the sums and numbers of those added and
     /// subtracted. It uses the part's own weights, but such that this mean and that of all other samples average to the
     /// mean of all.
-    fn half(&self, sums: [f64; 2], taken: [u32; 2], channel: usize) -> f64 {
+    fn part_mean(&self, sums: [f64; 2], taken: [u32; 2], channel: usize) -> f64 {
         let (weights, all) = (&self.weights, self.rgb.map(|rgb| rgb[channel]));
         let [own, others] = [weights.of_part(taken), weights.of_others(taken)];
         if !weights.subtracts() {
             return own.sum(sums) / own.taken();
         }
         let rest = [0, 1].map(|i| all[i] - sums[i]);
-        let apart = own.sum(sums) / own.taken() - others.sum(rest) / others.taken();
-        weights.sum(all) / weights.taken() + apart * f64::from(others.kept()) / weights.taken()
+        let difference = own.sum(sums) / own.taken() - others.sum(rest) / others.taken();
+        weights.sum(all) / weights.taken() + difference * f64::from(others.kept()) / weights.taken()
     }
 
     fn value(&self, layer: Layer, at: usize, channel: usize) -> f64 {
@@ -228,13 +228,16 @@ impl PixelSums<'_> {
             Layer::Position | Layer::Uv => sums[0],
             // Photons land independently, so the sum of their squares estimates the variance of their sum.
             Layer::Variance => self.variance.map_or_else(
-                || weights.variance(self.rgb.map(|rgb| rgb[channel]), sums[0] + sums[1]) + self.counts.image * splatted,
+                || {
+                    weights.variance(self.rgb.map(|rgb| rgb[channel]), sums[0] + sums[1])
+                        + self.splat_weights.image * splatted
+                },
                 |variance| variance[channel],
             ),
             Layer::HalfA | Layer::HalfB => {
-                let (taken, _) = self.number(at + OF_A_HALF - 1);
-                let counts = self.counts.halves[usize::from(layer == Layer::HalfB)];
-                self.half(sums, taken.map(|count| count as u32), channel) + counts * splatted
+                let (taken, _) = self.number(at + HALF_VALUES - 1);
+                let splat_weights = self.splat_weights.halves[usize::from(layer == Layer::HalfB)];
+                self.part_mean(sums, taken.map(|count| count as u32), channel) + splat_weights * splatted
             }
             _ if layer.is_light() => self.light(at + channel),
             _ => sums[0] / weights.added(),

@@ -14,22 +14,22 @@ use crate::trace::World;
 use crate::trace::contribution::{Contribution, FoundBy};
 use crate::trace::parallel::in_parallel;
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, Splat, batches_of_pass, send, splat_photon};
+use crate::trace::photon::{Batch, Splat, batches_of_pass, splat_photon, trace_batch};
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::Polarization;
 
 /// Batches whose splats are kept in memory at once.
-const AT_ONCE: usize = 64;
+const BATCHES_AT_ONCE: usize = 64;
 /// Sets these random numbers apart from those of the camera.
 const SEED: u64 = 0x7068_6f74;
 
 /// The callbacks of a render in progress.
-pub struct Observer<'a> {
+pub struct Callbacks<'a> {
     /// Called with the number of camera samples, or photons, done since the last call; from any thread.
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Returns whether to stop for a while; called again and again, from any thread.
-    pub is_due: &'a (dyn Fn() -> bool + Sync),
+    pub should_stop: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// How far a light pass is. It continues where it stopped.
@@ -43,7 +43,7 @@ pub struct LightPassProgress {
 
 impl LightPassProgress {
     /// Returns the share of a pass's photons that have been sent.
-    pub(in crate::trace) fn part(&self, world: &World, pass: &Pass) -> f64 {
+    pub(in crate::trace) fn sent_share(&self, world: &World, pass: &Pass) -> f64 {
         let Some(targets) = world.photon_targets.as_ref().filter(|_| self.batches > 0) else { return 0.0 };
         let batches = batches_of_pass(&pass.targets(world, targets, 1), 0, 0);
         let photons = |batches: &[Batch]| batches.iter().map(|batch| batch.count).sum::<u64>() as f64;
@@ -56,13 +56,13 @@ impl LightPassProgress {
 /// pass sends all photons; with replicates, every pass sends some.
 ///
 /// Every part sends all photons, which may be seen anywhere: summing what the parts found would change the last bits.
-pub fn show<const N: usize, P: Polarization<N>>(
+pub fn splat_photons<const N: usize, P: Polarization<N>>(
     world: &World,
     pass: &Pass,
     sending: &mut LightPassProgress,
     shard: Shard,
     tiles: &mut [Tile],
-    watch: &Observer,
+    callbacks: &Callbacks,
 ) -> bool {
     let Some(targets) = &world.photon_targets else { return true };
     // Where every pass sends photons, they weigh as much as its samples.
@@ -73,33 +73,33 @@ pub fn show<const N: usize, P: Polarization<N>>(
         tile.splatted = PhotonTile { pixels: vec![[0.0; 3]; pixels], layers: vec![0.0; pixels * numbers], moved: 0.0 };
     }
     let add = &mut |pixel: u32, splat: Splat| {
-        let early = pass.is_of_first_half().unwrap_or(splat.early);
-        let splat = Splat { early, ..splat.times(weight) };
+        let first_half = pass.is_in_first_half().unwrap_or(splat.first_half);
+        let splat = Splat { first_half, ..splat.times(weight) };
         let Splat { change, rgb, .. } = splat;
         let Some([tile, place]) = shard.place_of(window, pixel) else { return };
         let Tile { splatted, replicates, .. } = &mut tiles[tile];
         if !world.layers.is_empty() {
             add_to_layers(world, &splat, &mut splatted.layers[place * numbers..][..numbers]);
         }
-        if splat.caught {
+        if splat.on_catcher {
             let luminance = world.layers.luminance_of(&rgb);
-            pass.replicate.iter().for_each(|&replicate| replicates.show_caught(place, replicate, luminance));
+            pass.replicate.iter().for_each(|&replicate| replicates.add_caught_splat(place, replicate, luminance));
             return;
         }
         (0..3).for_each(|i| splatted.pixels[place][i] += rgb[i]);
         if change != 0.0 {
             splatted.moved += f64::from(change) * world.amount(rgb);
         }
-        pass.replicate.iter().for_each(|&replicate| replicates.show(place, replicate, rgb));
+        pass.replicate.iter().for_each(|&replicate| replicates.add_splat(place, replicate, rgb));
     };
-    send_on::<N, P>(world, &pass.targets(world, targets, 1), pass.photon_seed().0, sending, watch, add)
+    send_remaining::<N, P>(world, &pass.targets(world, targets, 1), pass.photon_seed().0, sending, callbacks, add)
 }
 
 /// Adds a photon that the camera sees to the row of its pixel, which holds means.
 fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
-    let Splat { light, rgb, bounces, dispersed, early, caught, first, weight, .. } = *splat;
-    if caught {
-        return world.layers.catch_photon(row, rgb);
+    let Splat { light, rgb, bounces, dispersed, first_half, on_catcher, first, weight, .. } = *splat;
+    if on_catcher {
+        return world.layers.add_caught_photon(row, rgb);
     }
     let light = Some(light);
     world
@@ -113,47 +113,49 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
         sums.for_each(|(sum, &light)| *sum += weight * f64::from(light));
     }
     world.layers.add_to(Layer::Variance, row, rgb.map(|x| x * x));
-    world.layers.add_to(if early { Layer::HalfA } else { Layer::HalfB }, row, rgb.map(|x| 2.0 * x));
+    world.layers.add_to(if first_half { Layer::HalfA } else { Layer::HalfB }, row, rgb.map(|x| 2.0 * x));
 }
 
-/// Sends all photons and calls `take` with their splats, pixel by pixel, in a fixed order; stores no image.
-pub fn splats<const N: usize, P: Polarization<N>>(
+/// Sends all photons and calls `record` with their splats, pixel by pixel, in a fixed order; stores no image.
+pub fn for_each_splat<const N: usize, P: Polarization<N>>(
     world: &World,
-    take: &mut dyn FnMut(u32, Splat),
+    record: &mut dyn FnMut(u32, Splat),
 ) -> LightPassProgress {
-    let (mut sending, watch) = (LightPassProgress::default(), Observer { progress: &|_| (), is_due: &|| false });
+    let (mut sending, callbacks) =
+        (LightPassProgress::default(), Callbacks { progress: &|_| (), should_stop: &|| false });
     if let Some(targets) = &world.photon_targets {
-        send_on::<N, P>(world, targets, world.method.seed, &mut sending, &watch, take);
+        send_remaining::<N, P>(world, targets, world.method.seed, &mut sending, &callbacks, record);
     }
     sending
 }
 
 /// Sends the photons that have not been sent, until told to stop; returns whether all are sent.
-fn send_on<const N: usize, P: Polarization<N>>(
+fn send_remaining<const N: usize, P: Polarization<N>>(
     world: &World,
     targets: &PhotonTargets,
     seed: u64,
     sending: &mut LightPassProgress,
-    watch: &Observer,
-    take: &mut dyn FnMut(u32, Splat),
+    callbacks: &Callbacks,
+    record: &mut dyn FnMut(u32, Splat),
 ) -> bool {
     let batches = batches_of_pass(targets, 0, seed ^ SEED);
-    for group in batches.get(sending.batches..).unwrap_or_default().chunks(AT_ONCE) {
-        let send = |number: usize| {
-            (!(watch.is_due)()).then(|| send(world, targets, group[number], false, &splat_photon::<N, P>))
+    for group in batches.get(sending.batches..).unwrap_or_default().chunks(BATCHES_AT_ONCE) {
+        let trace_batch = |number: usize| {
+            (!(callbacks.should_stop)())
+                .then(|| trace_batch(world, targets, group[number], false, &splat_photon::<N, P>))
         };
-        let done = in_parallel(group.len(), &send);
+        let done = in_parallel(group.len(), &trace_batch);
         for (batch, sent) in group.iter().zip(done) {
             // Splats are added in the order of the batches, so those after a gap are found again later.
             let Some(sent) = sent else { return false };
-            (watch.progress)(batch.count);
+            (callbacks.progress)(batch.count);
             (sending.batches, sending.photons) = (sending.batches + 1, sending.photons + batch.count);
             sending.stats += sent.stats;
-            let mut take_finite = |pixel, splat: Splat| match splat.rgb.iter().all(|x| x.is_finite()) {
-                true => take(pixel, splat),
+            let mut record_finite = |pixel, splat: Splat| match splat.rgb.iter().all(|x| x.is_finite()) {
+                true => record(pixel, splat),
                 false => sending.stats.non_finite += 1,
             };
-            sent.kept.iter().for_each(|placed| placed.spread(world.scene.film, &mut take_finite));
+            sent.kept.iter().for_each(|placed| placed.spread(world.scene.film, &mut record_finite));
         }
     }
     true

@@ -13,7 +13,7 @@ mod stopping;
 mod tile;
 mod values;
 
-pub use light_pass::splats;
+pub use light_pass::for_each_splat;
 pub use noise::{Estimate, Measured, Noise, Outlier, TileNoise};
 pub use rare_light::RareLight;
 pub use rendering::{Advance, PhotonCost, Rendering, Report, render};

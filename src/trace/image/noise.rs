@@ -22,7 +22,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::blur::squares_of_blur;
+use super::blur::squared_blur;
 use crate::film::{Filter, TilePlace};
 use crate::trace::replicates::{Products, REPLICATES, Replicates};
 
@@ -96,15 +96,15 @@ pub struct Outlier {
 }
 
 /// Student's t for 95 %, one side, 7 degrees of freedom.
-const STUDENT: f64 = 1.894_578_605;
+const STUDENT_T: f64 = 1.894_578_605;
 /// A pixel with more than this share of all variance may be an outlier (row A7 of the stability catalog).
-const MUCH: f64 = 0.1;
+const MIN_OUTLIER_SHARE: f64 = 0.1;
 /// Share of a pixel's variance above which one of eight replicates stands out: the largest of eight normal numbers is
 /// as far from their mean in 1 of 20 cases (Grubbs 1950, *Sample Criteria for Testing Outlying Observations*: 2.126
 /// standard deviations; 2.126^2 / 7).
-const ALONE: f64 = 0.6457;
+const GRUBBS_SHARE: f64 = 0.6457;
 /// How many finds may be expected where there is one: a Poisson number with this mean is 0 or 1 in 5 of 100 cases.
-const UNSEEN: f64 = 4.743_864_518;
+const MAX_UNSEEN: f64 = 4.743_864_518;
 
 /// The 95 % quantile of the normal distribution.
 const NORMAL: f64 = 1.644_853_627;
@@ -144,17 +144,17 @@ impl Spread {
     fn add<const C: usize>(&mut self, pixel: [i64; 2], replicates: &[[f64; C]; REPLICATES]) {
         let mean: [f64; C] = std::array::from_fn(|i| replicates.iter().map(|values| values[i]).sum::<f64>());
         let mean = mean.map(|sum| sum / REPLICATES as f64);
-        let apart = replicates.map(|values| -> [f64; C] { std::array::from_fn(|i| values[i] - mean[i]) });
-        self.products.add(&apart);
-        let (mut sum, mut most, mut replicate) = (0.0, 0.0, 0);
-        for (number, deviation) in apart.iter().enumerate() {
+        let deviations = replicates.map(|values| -> [f64; C] { std::array::from_fn(|i| values[i] - mean[i]) });
+        self.products.add(&deviations);
+        let (mut sum, mut largest, mut replicate) = (0.0, 0.0, 0);
+        for (number, deviation) in deviations.iter().enumerate() {
             let square = deviation.iter().map(|x| x * x).sum::<f64>();
             sum += square;
-            if square > most {
-                (most, replicate) = (square, number as u32);
+            if square > largest {
+                (largest, replicate) = (square, number as u32);
             }
         }
-        if most > ALONE * sum && self.outlier.as_ref().is_none_or(|(_, other)| sum > *other) {
+        if largest > GRUBBS_SHARE * sum && self.outlier.as_ref().is_none_or(|(_, other)| sum > *other) {
             self.outlier = Some((Outlier { pixel, share: 0.0, replicate }, sum));
         }
         self.squares += mean.iter().map(|x| x * x).sum::<f64>();
@@ -186,12 +186,12 @@ impl Spread {
                 shared += product * product;
             }
         }
-        let of_one = 1.0 - 1.0 / count;
+        let own_share = 1.0 - 1.0 / count;
         let pairs = 0.5 * count * (count - 1.0);
-        let normal = 2.0 * shared / pairs / (of_one * of_one + 1.0 / (count * count));
+        let normal = 2.0 * shared / pairs / (own_share * own_share + 1.0 / (count * count));
         let freedom = (2.0 * mean * mean / normal.max(spread)).max(1.0);
         let drawn = mean * (f_quantile(freedom, (count - 1.0) * freedom) - 1.0);
-        let rare = STUDENT * (2.0 * (spread - normal).max(0.0) / count).sqrt();
+        let rare = STUDENT_T * (2.0 * (spread - normal).max(0.0) / count).sqrt();
         [mean, mean + drawn.hypot(rare)]
     }
 
@@ -211,14 +211,14 @@ impl Spread {
     fn noise(&self, samples: u32, worst: Option<([i64; 2], f64)>) -> Noise {
         let (count, total, [mean, bound]) = (REPLICATES as f64, self.total(), self.errors());
         let outlier = self.outlier.map(|(outlier, sum)| Outlier { share: sum / total, ..outlier });
-        let outlier = outlier.filter(|outlier| outlier.share > MUCH);
-        let unseen = outlier.map_or(0.0, |outlier| UNSEEN * UNSEEN * outlier.share * mean);
-        let of_tile = |(corner, square)| TileNoise { corner, expected: self.relative(square) };
+        let outlier = outlier.filter(|outlier| outlier.share > MIN_OUTLIER_SHARE);
+        let unseen = outlier.map_or(0.0, |outlier| MAX_UNSEEN * MAX_UNSEEN * outlier.share * mean);
+        let tile_noise = |(corner, square)| TileNoise { corner, expected: self.relative(square) };
         Noise {
             samples,
             expected: self.relative(mean / count),
             at_most: self.relative((bound + unseen) / count),
-            worst_tile: worst.map_or(TileNoise::default(), of_tile),
+            worst_tile: worst.map_or(TileNoise::default(), tile_noise),
             outlier,
         }
     }
@@ -235,27 +235,27 @@ pub fn measure<'t>(
     let (mut alpha, mut blur) = (Spread::default(), Products::default());
     for (replicates, place) in tiles {
         let corner = [0, 1].map(|i| i64::from(first[i]) + i64::from(place.corner[i]));
-        let (mut of_tile, mut alpha_of_tile, mut blur_of_tile) =
+        let (mut tile_noise, mut tile_alpha, mut tile_blur) =
             (Spread::default(), Spread::default(), Products::default());
         for pixel in 0..place.pixels() {
             let (x, y) = (pixel as i64 % i64::from(place.width), pixel as i64 / i64::from(place.width));
             let at = [corner[0] + x, corner[1] + y];
-            of_tile.add(at, &replicates.pixel(pixel, filter, each));
-            replicates.blur(pixel, filter).iter().for_each(|replicates| blur_of_tile.add(replicates));
+            tile_noise.add(at, &replicates.pixel(pixel, filter, each));
+            replicates.blur(pixel, filter).iter().for_each(|replicates| tile_blur.add(replicates));
             let alphas = replicates.alpha(pixel, filter, each);
-            alphas.iter().for_each(|alphas| alpha_of_tile.add(at, &alphas.map(|alpha| [alpha])));
+            alphas.iter().for_each(|alphas| tile_alpha.add(at, &alphas.map(|alpha| [alpha])));
         }
         let count = REPLICATES as f64;
-        let square = of_tile.total() / of_tile.numbers / (count * (count - 1.0));
-        if worst.is_none_or(|(_, most)| square > most) {
+        let square = tile_noise.total() / tile_noise.numbers / (count * (count - 1.0));
+        if worst.is_none_or(|(_, largest)| square > largest) {
             worst = Some((corner, square));
         }
-        all.join(of_tile);
-        alpha.join(alpha_of_tile);
-        blur.join(&blur_of_tile);
+        all.join(tile_noise);
+        alpha.join(tile_alpha);
+        blur.join(&tile_blur);
     }
     let numbers = all.numbers.max(1.0);
-    let [expected, at_most] = squares_of_blur(&blur, STUDENT).map(|squares| all.relative(squares / numbers));
+    let [expected, at_most] = squared_blur(&blur, STUDENT_T).map(|squares| all.relative(squares / numbers));
     let blur = Estimate { expected, at_most };
     let Noise { expected, at_most, .. } = alpha.noise(REPLICATES as u32 * each, None);
     let alpha = (alpha.numbers > 0.0).then_some(Estimate { expected, at_most });
@@ -270,17 +270,17 @@ mod tests {
     /// Renders 1024 pixels with eight replicates of `samples` samples, many times. Returns the share of renders that
     /// are off by no more than their bound, and the share in which one replicate found much of the noise alone. `value`
     /// is that of a sample with a random number in a pixel, and `truth` its mean there.
-    fn told(value: &dyn Fn(u32, f64) -> f64, truth: &dyn Fn(u32) -> f64, samples: u32) -> [f64; 2] {
+    fn shares_of_renders(value: &dyn Fn(u32, f64) -> f64, truth: &dyn Fn(u32) -> f64, samples: u32) -> [f64; 2] {
         const RENDERS: u32 = 60;
         const PIXELS: u32 = 1024;
         let squares: f64 = (0..PIXELS).map(|pixel| truth(pixel) * truth(pixel)).sum();
-        let mut told = [0.0; 2];
+        let mut shares_of_renders = [0.0; 2];
         for render in 0..RENDERS {
             let (mut spread, mut error) = (Spread::default(), 0.0);
             for pixel in 0..PIXELS {
                 let replicates: [[f64; 3]; REPLICATES] = std::array::from_fn(|replicate| {
                     let key = [render, pixel * REPLICATES as u32 + replicate as u32];
-                    let number = |sample| Sampler::new(7, key, sample).four_plain(BranchKey::CAMERA, 0)[0];
+                    let number = |sample| Sampler::new(7, key, sample).get_random_4d(BranchKey::CAMERA, 0)[0];
                     let sum = (0..samples).map(|sample| value(pixel, number(sample).max(1e-12))).sum::<f64>();
                     [sum / f64::from(samples); 3]
                 });
@@ -289,10 +289,10 @@ mod tests {
                 spread.add([i64::from(pixel), 0], &replicates);
             }
             let noise = spread.noise(samples, None);
-            told[0] += f64::from(u8::from(error.sqrt() <= noise.at_most)) / f64::from(RENDERS);
-            told[1] += f64::from(u8::from(noise.outlier.is_some())) / f64::from(RENDERS);
+            shares_of_renders[0] += f64::from(u8::from(error.sqrt() <= noise.at_most)) / f64::from(RENDERS);
+            shares_of_renders[1] += f64::from(u8::from(noise.outlier.is_some())) / f64::from(RENDERS);
         }
-        told
+        shares_of_renders
     }
 
     /// Quantiles by Abramowitz & Stegun 1964, *Handbook of Mathematical Functions*, table 26.9.
@@ -321,7 +321,7 @@ mod tests {
                 for (pixel, size) in sizes.iter().enumerate() {
                     let normal = |replicate: usize| {
                         let u = Sampler::new(number as u64, [render, replicate as u32], pixel as u32)
-                            .four_plain(BranchKey::CAMERA, 0);
+                            .get_random_4d(BranchKey::CAMERA, 0);
                         size * (-2.0 * libm::log(1.0 - u[0])).sqrt() * libm::cos(std::f64::consts::TAU * u[1])
                     };
                     let replicates: [[f64; 1]; REPLICATES] = std::array::from_fn(|replicate| [1e3 + normal(replicate)]);
@@ -342,7 +342,7 @@ mod tests {
     #[test]
     fn a7_bounds_of_samples_without_variance_are_kept_by_what_may_be_unseen() {
         for (a, samples) in [0.3, 0.45, 0.8].into_iter().flat_map(|a| [(a, 8), (a, 64)]) {
-            let [kept, rare] = told(&|_, u| libm::pow(u, -a), &|_| 1.0 / (1.0 - a), samples);
+            let [kept, rare] = shares_of_renders(&|_, u| libm::pow(u, -a), &|_| 1.0 / (1.0 - a), samples);
             assert!(kept >= 0.95, "u^-{a}, {samples}: {kept} {rare}");
             assert!(if a == 0.3 { rare < 0.25 } else { a == 0.45 || rare >= 0.95 }, "u^-{a}, {samples}: {rare}");
         }
@@ -352,7 +352,7 @@ mod tests {
             // The fraction of a thousand times the number is as good as another random number.
             let value =
                 |pixel: u32, u: f64| 0.7 + 0.6 * (1e3 * u).fract() + if u < chance { bright(pixel) } else { 0.0 };
-            let [kept, found] = told(&value, &|pixel| 1.0 + chance * bright(pixel), samples);
+            let [kept, found] = shares_of_renders(&value, &|pixel| 1.0 + chance * bright(pixel), samples);
             assert!(kept >= 0.95 && found > 0.2, "{pixels} pixels, {samples} samples: {kept} {found}");
         }
     }

@@ -9,12 +9,12 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::layer_sums::{images, spectral_image};
-use super::light_pass::{self, Observer};
+use super::light_pass::{self, Callbacks};
 use super::noise::{Estimate, Measured, Noise, measure};
 use super::passes::Progress;
 use super::rare_light::{RareLight, rare_light};
 use super::saved::{self, Restored};
-use super::stopping::{Clock, FIRST_LOOK, Stopped, is_wanted_known, next_stage, samples_wanted};
+use super::stopping::{Clock, FIRST_LOOK, Stopped, can_estimate_samples, estimate_samples, next_stage};
 use super::tile::Tile;
 use super::values::values_of;
 use crate::error::Result;
@@ -185,7 +185,7 @@ impl<'a> Rendering<'a> {
             None => all,
             Some(_) if self.is_finished() => self.done(),
             Some(stop) => {
-                let wanted = samples_wanted(stop, &self.progress, &self.clock);
+                let wanted = estimate_samples(stop, &self.progress, &self.clock);
                 let work = all as f64 * f64::from(wanted) / f64::from(world.method.samples);
                 self.done().max(work as u64)
             }
@@ -195,7 +195,7 @@ impl<'a> Rendering<'a> {
     /// Whether the work is known, at least roughly.
     pub fn is_work_known(&self) -> bool {
         let stop = self.world().method.stop.as_ref();
-        self.is_finished() || stop.is_none_or(|stop| is_wanted_known(stop, &self.progress))
+        self.is_finished() || stop.is_none_or(|stop| can_estimate_samples(stop, &self.progress))
     }
 
     /// Returns how much of the work is done.
@@ -210,18 +210,22 @@ impl<'a> Rendering<'a> {
         self.advance_until(progress, &|| false) == Advance::Passed
     }
 
-    /// Makes the next pass, but stops once `is_due`, called before every pixel and from any thread, returns true.
-    pub fn advance_until(&mut self, progress: &(dyn Fn(u64) + Sync), is_due: &(dyn Fn() -> bool + Sync)) -> Advance {
+    /// Makes the next pass, but stops once `should_stop`, called before every pixel and from any thread, returns true.
+    pub fn advance_until(
+        &mut self,
+        progress: &(dyn Fn(u64) + Sync),
+        should_stop: &(dyn Fn() -> bool + Sync),
+    ) -> Advance {
         let stopped = AtomicBool::new(false);
-        let stops = || {
-            let due = stopped.load(Ordering::Relaxed) || is_due();
+        let latched_stop = || {
+            let due = stopped.load(Ordering::Relaxed) || should_stop();
             stopped.fetch_or(due, Ordering::Relaxed) || due
         };
-        let watch = Observer { progress, is_due: &stops };
+        let callbacks = Callbacks { progress, should_stop: &latched_stop };
         if !self.begin_pass() {
             return Advance::Finished;
         }
-        if !in_lanes_of_layers!(self.world(), N, P => self.pass::<N, P>(&watch)) {
+        if !in_lanes_of_layers!(self.world(), N, P => self.pass::<N, P>(&callbacks)) {
             return Advance::Stopped;
         }
         if self.is_finished() { Advance::Finished } else { Advance::Passed }
@@ -249,12 +253,13 @@ impl<'a> Rendering<'a> {
 
     /// Returns the image of the samples so far.
     pub fn film(&self) -> Film {
-        let (mut film, counts) = (self.frame(), self.progress.shown_counts(self.world()));
+        let (mut film, splat_weights) = (self.frame(), self.progress.splat_weights(self.world()));
         film.resize(film.height);
         let places: Vec<(&Tile, TilePlace)> = self.places().collect();
         for some in places.chunks(TILES_AT_A_TIME) {
-            let made = in_parallel(some.len(), &|number| values_of(self.world(), &film, some[number].0, counts));
-            made.iter().zip(some).for_each(|(values, (_, place))| values.put_into(&mut film, *place));
+            let tile_values =
+                in_parallel(some.len(), &|number| values_of(self.world(), &film, some[number].0, splat_weights));
+            tile_values.iter().zip(some).for_each(|(values, (_, place))| values.put_into(&mut film, *place));
         }
         film
     }
@@ -278,8 +283,8 @@ impl<'a> Rendering<'a> {
 
     /// Returns the values of each tile that is rendered.
     pub fn tiles(&self) -> impl Iterator<Item = TileValues> {
-        let (frame, counts) = (self.frame(), self.progress.shown_counts(self.world()));
-        self.places().map(move |(tile, _)| values_of(self.world(), &frame, tile, counts))
+        let (frame, splat_weights) = (self.frame(), self.progress.splat_weights(self.world()));
+        self.places().map(move |(tile, _)| values_of(self.world(), &frame, tile, splat_weights))
     }
 
     /// Returns the number of camera samples taken so far.
@@ -290,9 +295,9 @@ impl<'a> Rendering<'a> {
     /// Returns what was noticed so far.
     pub fn report(&self) -> Report {
         let (mut all, mut first_non_finite, mut polarization_of_tile) = (self.shared_stats(), None, 0.0_f64);
-        let shown_counts = self.progress.shown_counts(self.world()).image;
+        let splat_weight = self.progress.splat_weights(self.world()).image;
         for tile in &self.tiles {
-            let stats = self.stats_of(tile, shown_counts);
+            let stats = self.stats_of(tile, splat_weight);
             if stats.light > 0.0 {
                 polarization_of_tile = polarization_of_tile.max(stats.polarization / stats.light);
             }
@@ -309,7 +314,7 @@ impl<'a> Rendering<'a> {
             dropped: per_sample(all.dropped),
             stopped: per_sample(all.stopped),
             unmatched: all.unmatched,
-            has_many_media: media::are_many(&self.world().scene),
+            has_many_media: media::has_too_many(&self.world().scene),
             by_chance: all.by_chance,
             polarization: if all.light > 0.0 { all.polarization / all.light } else { 0.0 },
             polarization_of_tile,
@@ -372,9 +377,9 @@ impl<'a> Rendering<'a> {
     /// Returns the camera samples taken, including those of the pass that was stopped, as if all pixels took as many.
     fn samples_taken(&self) -> u64 {
         let (samples, passes) = (self.progress.samples, self.progress.passes);
-        let of_pass = u64::from(self.progress.end_of_pass(self.world()) - samples);
-        let ahead = |tile: &Tile| if tile.passes > passes { tile.sums.len() as u64 } else { tile.ahead.into() };
-        self.pixels() * u64::from(samples) + of_pass * self.tiles.iter().map(ahead).sum::<u64>()
+        let pass_samples = u64::from(self.progress.end_of_pass(self.world()) - samples);
+        let pixels_ahead = |tile: &Tile| if tile.passes > passes { tile.sums.len() as u64 } else { tile.ahead.into() };
+        self.pixels() * u64::from(samples) + pass_samples * self.tiles.iter().map(pixels_ahead).sum::<u64>()
     }
 
     fn shared_stats(&self) -> Stats {
@@ -384,36 +389,46 @@ impl<'a> Rendering<'a> {
     }
 
     /// Returns the statistics of a tile, including the light that photons show there, whose sums have the given weight.
-    fn stats_of(&self, tile: &Tile, shown_counts: f64) -> Stats {
+    fn stats_of(&self, tile: &Tile, splat_weight: f64) -> Stats {
         let mut stats = tile.stats;
-        let samples = f64::from(self.samples()) * shown_counts;
+        let samples = f64::from(self.samples()) * splat_weight;
         stats.polarization += samples * tile.splatted.moved;
         stats.light += samples * tile.splatted.pixels.iter().map(|&rgb| self.world().amount(rgb)).sum::<f64>();
         stats
     }
 
     /// Makes the next pass, or continues it; returns whether it is finished.
-    fn pass<const N: usize, P: Polarization<N>>(&mut self, watch: &Observer) -> bool {
+    fn pass<const N: usize, P: Polarization<N>>(&mut self, callbacks: &Callbacks) -> bool {
         let world = &*self.world;
         let progress = &mut self.progress;
         let pass = progress.pass(world);
         let PhotonCost { splatted, stored } = self.photon_cost;
-        let of_shown = Observer { progress: &|photons| (watch.progress)(splatted * photons), is_due: watch.is_due };
-        if !light_pass::show::<N, P>(world, &pass, &mut progress.sending, self.shard, &mut self.tiles, &of_shown) {
+        let photon_callbacks = Callbacks {
+            progress: &|photons| (callbacks.progress)(splatted * photons),
+            should_stop: callbacks.should_stop,
+        };
+        if !light_pass::splat_photons::<N, P>(
+            world,
+            &pass,
+            &mut progress.sending,
+            self.shard,
+            &mut self.tiles,
+            &photon_callbacks,
+        ) {
             return false;
         }
-        let of_stopped = self.light.take().and_then(|light| light.downcast::<PassLight<N, P>>().ok());
-        let light = of_stopped.unwrap_or_else(|| {
+        let stopped_light = self.light.take().and_then(|light| light.downcast::<PassLight<N, P>>().ok());
+        let light = stopped_light.unwrap_or_else(|| {
             let light = PassLight::new(world, &pass);
-            (watch.progress)(stored * light.sent());
+            (callbacks.progress)(stored * light.sent());
             Box::new(light)
         });
         let (window, passes) = (world.scene.film.window(), progress.passes);
         let places: Vec<TilePlace> = self.shard.tiles(window).collect();
         let left = self.tiles.iter_mut().zip(places).filter(|(tile, _)| tile.passes == passes).collect();
         for_each_in_parallel(left, &|(tile, place): (&mut Tile, TilePlace)| {
-            let taken = tile.take::<N, P>(place, world, &light, &pass, watch.is_due);
-            (watch.progress)(u64::from(taken) * pass.numbers.len() as u64);
+            let taken = tile.take::<N, P>(place, world, &light, &pass, callbacks.should_stop);
+            (callbacks.progress)(u64::from(taken) * pass.numbers.len() as u64);
         });
         if self.tiles.iter().any(|tile| tile.passes == passes) {
             self.light = Some(light);

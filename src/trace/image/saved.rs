@@ -71,10 +71,10 @@ pub fn restore(
         return Ok(Restored::HasMore(progress.samples));
     }
     if let Some(objection) = objection(world, progress, end_of_pass, samples) {
-        let end = if world.method.stop.is_some() { progress.samples_of_stage() } else { samples };
+        let end = if world.method.stop.is_some() { progress.samples_after_stage() } else { samples };
         return Ok(Restored::Refused(objection, end));
     }
-    if saved != tiles.len() as u64 || !progress.is_whole(world) {
+    if saved != tiles.len() as u64 || !progress.is_consistent(world) {
         return Err(blocks.damaged());
     }
     // Camera samples do not depend on how many photons are sent beside them.
@@ -83,7 +83,7 @@ pub fn restore(
     for tile in tiles {
         let mut restored: Tile = blocks.block()?;
         let passes = u64::from(restored.passes);
-        let fits = restored.is_shaped_as(tile, &world.layers) && restored.layers.covered.is_among(objects);
+        let fits = restored.has_same_shape(tile, &world.layers) && restored.layers.covered.is_valid_for(objects);
         if !fits || ![0, 1].map(|more| u64::from(progress.passes) + more).contains(&passes) {
             return Err(blocks.damaged());
         }
@@ -102,20 +102,20 @@ pub fn restore(
 /// Returns why a render cannot continue from what was saved of one with the same plan and `samples` samples.
 fn objection(world: &World, progress: &Progress, end_of_pass: Option<u32>, samples: u32) -> Option<String> {
     if let Some(stop) = &world.method.stop {
-        let (end, most) = (progress.samples_of_stage(), stop.most);
+        let (end, most) = (progress.samples_after_stage(), stop.most);
         return (end > most).then(|| format!("it is on its way to {end} samples per pixel, more than {most}"));
     }
-    let asked = world.method.samples;
+    let requested = world.method.samples;
     let (taken, begun) = (progress.samples, end_of_pass.is_some());
-    let is_on_the_way = progress.is_on_the_way_of(world);
+    let is_on_the_way = progress.is_reached_by(world);
     if !is_on_the_way || end_of_pass.is_some_and(|end| end != progress.end_of_pass(world)) {
         return Some(format!(
-            "it has {taken} of {samples} samples per pixel{}, but a render with {asked} has no pass that ends there",
+            "it has {taken} of {samples} samples per pixel{}, but a render with {requested} has no pass that ends there",
             if begun { ", and more in some pixels" } else { "" }
         ));
     }
     let halves = [Layer::HalfA, Layer::HalfB].iter().any(|&half| world.layers.at(half).is_some());
-    (halves && asked != samples && (taken > 0 || begun)).then(|| {
-        format!("half_a and half_b are halves of {samples} samples, and those of {asked} cannot be made from them")
+    (halves && requested != samples && (taken > 0 || begun)).then(|| {
+        format!("half_a and half_b are halves of {samples} samples, and those of {requested} cannot be made from them")
     })
 }

@@ -10,12 +10,12 @@ use crate::trace::Stop;
 use crate::trace::replicates::REPLICATES;
 
 /// Samples of each replicate before the first look at the noise. Further looks come whenever they have doubled.
-const FIRST: u32 = 8;
+const FIRST_STAGE: u32 = 8;
 /// Fewest samples of a pixel that tell its noise.
-pub const FIRST_LOOK: u32 = REPLICATES as u32 * FIRST;
+pub const FIRST_LOOK: u32 = REPLICATES as u32 * FIRST_STAGE;
 /// Share of the time left that a stage is planned to take, and share of all time that is too short for another one.
-const PLANNED: f64 = 0.95;
-const SHORT: f64 = 0.02;
+const STAGE_TIME_SHARE: f64 = 0.95;
+const MIN_TIME_SHARE: f64 = 0.02;
 
 /// What ended a render that had a stop rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -35,7 +35,7 @@ impl Stopped {
     pub fn new(stop: &Stop, progress: &Progress) -> Self {
         match () {
             () if is_enough(stop, progress.measured.as_ref()) => Self::Noise,
-            () if progress.stage.before >= most(stop) => Self::Samples,
+            () if progress.stage.before >= max_each(stop) => Self::Samples,
             () => Self::Time,
         }
     }
@@ -69,7 +69,7 @@ impl Clock {
     }
 
     /// Returns what is left of a time since the render began.
-    fn left(&self, time: Duration) -> Duration {
+    fn remaining(&self, time: Duration) -> Duration {
         time.saturating_sub(self.began.elapsed())
     }
 
@@ -87,14 +87,14 @@ fn is_enough(stop: &Stop, measured: Option<&Measured>) -> bool {
     stop.noise.zip(measured).is_some_and(|(wanted, error)| is_small(wanted, error))
 }
 
-fn most(stop: &Stop) -> u32 {
+fn max_each(stop: &Stop) -> u32 {
     stop.most / REPLICATES as u32
 }
 
 /// Returns how many samples each replicate takes next after `each`, if there is room and time for them.
-pub fn doubled(stop: &Stop, each: u32) -> u32 {
+pub fn next_stage_size(stop: &Stop, each: u32) -> u32 {
     match (each, stop.time) {
-        (0, None) => FIRST,
+        (0, None) => FIRST_STAGE,
         (0, Some(_)) => 1,
         _ => each,
     }
@@ -106,16 +106,18 @@ pub fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
         return 0;
     }
     let each = progress.stage.before;
-    let size = doubled(stop, each).min(most(stop) - each.min(most(stop)));
+    let size = next_stage_size(stop, each).min(max_each(stop) - each.min(max_each(stop)));
     match stop.time {
         Some(time) if each > 0 => {
-            let left = clock.left(time);
+            let left = clock.remaining(time);
             let all = REPLICATES as u32 * each;
-            if left < time.mul_f64(SHORT) {
+            if left < time.mul_f64(MIN_TIME_SHARE) {
                 return 0;
             }
             // A run that continues from a checkpoint does not yet know how fast it is.
-            let fits = clock.samples_in(left.mul_f64(PLANNED), all).map_or(1.0, |samples| samples / REPLICATES as f64);
+            let fits = clock
+                .samples_in(left.mul_f64(STAGE_TIME_SHARE), all)
+                .map_or(1.0, |samples| samples / REPLICATES as f64);
             size.min(fits as u32)
         }
         _ => size,
@@ -123,26 +125,26 @@ pub fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
 }
 
 /// Whether it is roughly known how many samples of a pixel are enough: for an error alone, not before the first look.
-pub fn is_wanted_known(stop: &Stop, progress: &Progress) -> bool {
+pub fn can_estimate_samples(stop: &Stop, progress: &Progress) -> bool {
     stop.noise.is_none() || stop.time.is_some() || progress.measured.is_some()
 }
 
 /// Estimates how many samples of a pixel will be enough; if that is not known, returns the most that are taken.
-pub fn samples_wanted(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
+pub fn estimate_samples(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
     let stage = progress.stage;
     let each = stage.before + stage.size;
-    let mut wanted = each.max(FIRST).min(most(stop));
+    let mut wanted = each.max(FIRST_STAGE).min(max_each(stop));
     if let (Some(goal), Some(measured)) = (stop.noise, &progress.measured) {
         let times = (measured.at_most() / goal).powi(2);
         let least = (times * f64::from(stage.before)).max(f64::from(stop.least / REPLICATES as u32));
-        while f64::from(wanted) < least && wanted < most(stop) {
-            wanted = wanted.saturating_mul(2).min(most(stop));
+        while f64::from(wanted) < least && wanted < max_each(stop) {
+            wanted = wanted.saturating_mul(2).min(max_each(stop));
         }
     } else {
-        wanted = most(stop);
+        wanted = max_each(stop);
     }
     let wanted = REPLICATES as u32 * wanted;
     let (taken, time) = (REPLICATES as u32 * stage.before, stop.time);
-    let in_time = time.and_then(|time| clock.samples_in(clock.left(time), taken));
+    let in_time = time.and_then(|time| clock.samples_in(clock.remaining(time), taken));
     in_time.map_or(wanted, |more| wanted.min(taken.saturating_add(more as u32)).max(REPLICATES as u32 * each))
 }

@@ -50,11 +50,11 @@ pub struct PhotonTile {
 /// replicates where a stop rule compares them, what photons contribute to it, and its finished values.
 pub fn bytes_of_film(scene: &Scene<Curve>, method: &Method) -> u64 {
     let is_signed = scene.film.filter.is_signed();
-    let (shows, catches) = (method.light_pass.is_some(), scene.has_shadow_catchers());
-    let of_replicates = |_: &_| Replicates::bytes_of_pixel(is_signed, method.map().is_some(), catches, shows);
-    let replicates = method.stop.as_ref().map_or(0, of_replicates);
+    let (splats, catches) = (method.light_pass.is_some(), scene.has_shadow_catchers());
+    let replicate_bytes = |_: &_| Replicates::bytes_of_pixel(is_signed, method.map().is_some(), catches, splats);
+    let replicates = method.stop.as_ref().map_or(0, replicate_bytes);
     let sums = (1 + usize::from(is_signed)) * size_of::<PixelSum>();
-    let splatted = if shows { size_of::<[f64; 3]>() } else { 0 };
+    let splatted = if splats { size_of::<[f64; 3]>() } else { 0 };
     scene.film.window().pixels() * (sums + replicates + splatted + size_of::<Pixel>()) as u64
 }
 
@@ -65,7 +65,7 @@ impl Tile {
         let subtracted = if is_signed { sums.clone() } else { Vec::new() };
         let layers = LayerSums::new(&world.layers, sums.len(), is_signed);
         let replicates = match world.method.stop {
-            Some(_) => Replicates::new(sums.len(), is_signed, world.has_map(), world.layers.catches()),
+            Some(_) => Replicates::new(sums.len(), is_signed, world.has_map(), world.layers.has_catchers()),
             None => Replicates::default(),
         };
         let (splatted, stats) = (PhotonTile::default(), Stats::default());
@@ -73,14 +73,14 @@ impl Tile {
     }
 
     /// Whether it has as many sums of each kind as another tile of the same place.
-    pub fn is_shaped_as(&self, other: &Self, layers: &Layers) -> bool {
+    pub fn has_same_shape(&self, other: &Self, layers: &Layers) -> bool {
         let pixels = other.sums.len();
-        let of = |whole: usize| [0, whole].into_iter();
+        let allowed_lengths = |whole: usize| [0, whole].into_iter();
         (self.sums.len(), self.subtracted.len()) == (pixels, other.subtracted.len())
-            && self.layers.is_shaped_as(&other.layers)
-            && self.replicates.is_shaped_as(&other.replicates)
-            && of(pixels).any(|length| length == self.splatted.pixels.len())
-            && of(pixels * layers.numbers).any(|length| length == self.splatted.layers.len())
+            && self.layers.has_same_shape(&other.layers)
+            && self.replicates.has_same_shape(&other.replicates)
+            && allowed_lengths(pixels).any(|length| length == self.splatted.pixels.len())
+            && allowed_lengths(pixels * layers.numbers).any(|length| length == self.splatted.layers.len())
             && (self.ahead as usize) < pixels
     }
 
@@ -97,16 +97,16 @@ impl Tile {
         world: &World,
         light: &PassLight<N, P>,
         pass: &Pass,
-        stops: &dyn Fn() -> bool,
+        should_stop: &dyn Fn() -> bool,
     ) -> u32 {
         let window = world.scene.film.window();
         let mut tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_layers();
         let first = self.ahead;
-        while (self.ahead as usize) < self.sums.len() && !stops() {
+        while (self.ahead as usize) < self.sums.len() && !should_stop() {
             // Random numbers and rays belong to a pixel of the format, whatever part of it is rendered.
             let x = window.left + (place.corner[0] + self.ahead % place.width) as i32;
             let y = window.top + (place.corner[1] + self.ahead / place.width) as i32;
-            self.take_pixel(world, &mut tracer, light, [x, y], pass);
+            self.sample_pixel(world, &mut tracer, light, [x, y], pass);
             self.ahead += 1;
         }
         let taken = self.ahead - first;
@@ -117,7 +117,7 @@ impl Tile {
     }
 
     /// Takes samples of the next pixel, which is pixel (x, y) of the format.
-    fn take_pixel<'w, const N: usize, P: Polarization<N>>(
+    fn sample_pixel<'w, const N: usize, P: Polarization<N>>(
         &mut self,
         world: &World,
         tracer: &mut PathTracer<'w, N, P>,
@@ -129,23 +129,23 @@ impl Tile {
         // Sums of samples that are added, and of those that are subtracted.
         let mut sums = [PassSum::default(), PassSum::default()];
         let mut blurs = [PassSum::default(), PassSum::default()];
-        let blurs_are_told = light.photons.as_ref().is_some_and(|photons| photons.half.is_some());
+        let measures_blur = light.photons.as_ref().is_some_and(|photons| photons.half_blur.is_some());
         let rate = world.rate(pixel);
         let caught_before = pass.replicate.and_then(|_| self.layers.caught(&world.layers, place));
-        for number in rate.of(&pass.numbers) {
-            let among_all = rate.among_all(number);
-            tracer.light_vertices = light.vertices(among_all - pass.numbers.start);
+        for number in rate.own_numbers(&pass.numbers) {
+            let average_number = rate.average_number(number);
+            tracer.light_vertices = light.vertices(average_number - pass.numbers.start);
             let sampler = Sampler::of_pixel(pass.seed, pixel, number);
             let sample = tracer.sample(&sampler, pixel);
             let lobe = usize::from(sample.is_subtracted);
-            if blurs_are_told {
+            if measures_blur {
                 blurs[lobe].add(&Sample { rgb: tracer.blur(), ..sample });
             }
             if !sums[lobe].add(&sample) {
                 self.stats.non_finite += 1;
                 self.first_non_finite.get_or_insert([pixel[0].into(), pixel[1].into(), number.into()]);
             } else if let Some(layers) = tracer.layers() {
-                let early = pass.is_of_first_half().unwrap_or(among_all < world.method.samples.div_ceil(2));
+                let early = pass.is_in_first_half().unwrap_or(average_number < world.method.samples.div_ceil(2));
                 layers.keep(sample.is_subtracted);
                 self.layers.add(&world.layers, place, early, &sample, &layers.left());
             }

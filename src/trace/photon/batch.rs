@@ -10,13 +10,13 @@ use crate::trace::walk::{Polarization, Walker};
 use crate::trace::{Transport, World};
 
 /// Photons of a batch, which are traced one after another. What they leave is added in the order of the batches.
-const BATCH: u64 = 4096;
+const BATCH_SIZE: u64 = 4096;
 /// Use of a photon's random numbers: its first ray.
 const RAY: u32 = 0;
 
 /// Photons are traced like camera paths: along all branches while they carry much, then along one. Splitting at 0.05
 /// took as much time for the same noise; never splitting took 2 to 15 times as much (`benches/caustics.rs`).
-pub const PHOTONS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
+pub const PHOTON_TRANSPORT: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
 
 /// A part of a target's photons.
 #[derive(Clone, Copy)]
@@ -30,12 +30,12 @@ pub struct Batch {
 pub struct SentBatch<T> {
     pub kept: Vec<T>,
     /// Where each photon was sent and whether anything was kept of it.
-    pub places: Vec<([f64; 2], bool)>,
+    pub outcomes: Vec<([f64; 2], bool)>,
     pub stats: Stats,
 }
 
 /// The callback that decides what is kept of a photon that lands.
-type Land<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &PhotonHit<N, P>, &mut Vec<T>) + 'a;
+type LandCallback<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &PhotonHit<N, P>, &mut Vec<T>) + 'a;
 
 /// Splits all photons to some targets into batches. Their numbers follow those of the first `before` passes.
 pub fn batches_of_pass(targets: &PhotonTargets, before: u64, seed: u64) -> Vec<Batch> {
@@ -44,26 +44,26 @@ pub fn batches_of_pass(targets: &PhotonTargets, before: u64, seed: u64) -> Vec<B
 
 /// Splits those photons of each target that have the given numbers into batches.
 pub fn batches(targets: &PhotonTargets, numbers: impl Fn(&PhotonTarget) -> Range<u64>, seed: u64) -> Vec<Batch> {
-    let of_target = |(target, of): (usize, &PhotonTarget)| {
+    let target_batches = |(target, of): (usize, &PhotonTarget)| {
         let numbers = numbers(of);
         let end = numbers.end;
-        let batch = move |first: u64| Batch { target, first, count: BATCH.min(end - first), seed };
-        numbers.step_by(BATCH as usize).map(batch)
+        let batch = move |first: u64| Batch { target, first, count: BATCH_SIZE.min(end - first), seed };
+        numbers.step_by(BATCH_SIZE as usize).map(batch)
     };
-    targets.targets.iter().enumerate().flat_map(of_target).collect()
+    targets.targets.iter().enumerate().flat_map(target_batches).collect()
 }
 
 /// Traces the photons of one batch; `land` decides what is kept of each that lands. If `learns`, only records for which
 /// photons something would be kept.
-pub fn send<const N: usize, P: Polarization<N>, T>(
+pub fn trace_batch<const N: usize, P: Polarization<N>, T>(
     world: &World,
     targets: &PhotonTargets,
     batch: Batch,
     learns: bool,
-    land: &Land<N, P, T>,
+    land: &LandCallback<N, P, T>,
 ) -> SentBatch<T> {
-    let mut walker = Walker::<N, P>::new(world, PHOTONS);
-    let (mut kept, mut places) = (Vec::new(), Vec::new());
+    let mut walker = Walker::<N, P>::new(world, PHOTON_TRANSPORT);
+    let (mut kept, mut outcomes) = (Vec::new(), Vec::new());
     let target = &targets.targets[batch.target];
     let light = target.light;
     // Directions and wavelengths matter more than where on a small lamp photons start, so they get the best numbers.
@@ -71,21 +71,21 @@ pub fn send<const N: usize, P: Polarization<N>, T>(
     for number in batch.first..batch.first + batch.count {
         let key = [batch.target as u32, (number >> 32) as u32];
         let sampler = Sampler::new(batch.seed, key, number as u32);
-        let u = sampler.four(BranchKey::CAMERA, RAY);
-        let more = if is_extended { sampler.four_more(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
+        let u = sampler.get_4d(BranchKey::CAMERA, RAY);
+        let more = if is_extended { sampler.get_more_4d(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
         let guide_uv = target.guide.sample([u[0], u[1]]);
         let before = kept.len();
         if let Some(emitted) = targets.sample_le(&world.scene, batch.target, guide_uv, [u[3], more]) {
             let draw = world.method.basis.draw(u[2]);
-            let (draw, sampler, over) = (&draw, &sampler, Surfaces::Smooth);
-            let early = number < target.photons / 2;
-            let photon = Photon { emitted: &emitted, light, draw, sampler, over, early };
+            let (draw, sampler, scope) = (&draw, &sampler, Surfaces::Smooth);
+            let first_half = number < target.photons / 2;
+            let photon = Photon { emitted: &emitted, light, draw, sampler, scope, first_half };
             follow_photon(&mut walker, &photon, &mut |walker, photon_hit| land(walker, photon_hit, &mut kept));
         }
         if learns {
-            places.push((guide_uv, kept.len() > before));
+            outcomes.push((guide_uv, kept.len() > before));
             kept.clear();
         }
     }
-    SentBatch { kept, places, stats: walker.stats }
+    SentBatch { kept, outcomes, stats: walker.stats }
 }

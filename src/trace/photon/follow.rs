@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::light::{LeSample, LightId};
 use crate::material::{Branch, Lobes, Scatter, ScatterContext};
-use crate::math::{DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
+use crate::math::{DVec3, Frame, Ray, Sampler, sample_cosine_hemisphere, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::World;
@@ -13,15 +13,15 @@ use crate::trace::walk::{
 };
 
 /// The branch of what passes through holes, beyond those that a material may have.
-const BEYOND: usize = 64;
+const PASS_THROUGH_BRANCH: usize = 64;
 /// The branch of what narrow lobes scatter separately.
-const BY_NARROW: usize = 65;
+const NARROW_BRANCH: usize = 65;
 /// Probability that the material draws the direction of a photon, and not the cosine, where the shading normal is not
 /// the surface's own. Diffuse materials never do.
-const BY_MATERIAL: f64 = 0.5;
+const MATERIAL_PROBABILITY: f64 = 0.5;
 /// Uses of the random numbers: where a photon leaves a surface, and whether it passes through one.
 const SCATTER: u32 = 4;
-const STRAIGHT: u32 = 9;
+const PASS_THROUGH: u32 = 9;
 
 /// A photon, or a path from a light: how it starts, and where it goes.
 pub struct Photon<'a, const N: usize> {
@@ -31,14 +31,14 @@ pub struct Photon<'a, const N: usize> {
     /// What its lanes stand for.
     pub draw: &'a Draw<N>,
     pub sampler: &'a Sampler,
-    pub over: Surfaces,
+    pub scope: Surfaces,
     /// Whether it is of the first half of those sent with it.
-    pub early: bool,
+    pub first_half: bool,
 }
 
 impl<const N: usize> Photon<'_, N> {
     /// Whether photons of the light pass contribute the light that starts along its way.
-    pub fn is_left_to_pass(&self, world: &World) -> bool {
+    pub fn is_for_light_pass(&self, world: &World) -> bool {
         world.is_found_by_photons(self.light, &self.toward_light())
     }
 
@@ -63,14 +63,14 @@ pub struct PhotonHit<'a, const N: usize, P = Polarized> {
 
 impl<const N: usize, P> PhotonHit<'_, N, P> {
     /// Returns what the light emits along the photon's way.
-    pub fn shone(&self, world: &World) -> Lanes<N> {
+    pub fn emission(&self, world: &World) -> Lanes<N> {
         let Photon { emitted, light, .. } = *self.photon;
         world.scene.lights[light].toward(self.at.context.draw, -emitted.ray.direction, emitted.uv())
     }
 
     /// Returns the flux of the photon, lane by lane.
     pub fn flux(&self, world: &World) -> Lanes<N> {
-        self.path.throughput.scaled(self.photon.emitted.factor / self.path.eta_scale).of(self.shone(world))
+        self.path.throughput.scaled(self.photon.emitted.factor / self.path.eta_scale).of(self.emission(world))
     }
 }
 
@@ -109,14 +109,14 @@ fn advance<const N: usize, P: Polarization<N>>(
     photon: &Photon<N>,
     land: &mut dyn FnMut(&Walker<N, P>, &PhotonHit<N, P>),
 ) {
-    let &Photon { draw, sampler, over, .. } = photon;
+    let &Photon { draw, sampler, scope, .. } = photon;
     let world = walker.world;
-    if path.vertices >= walker.transport.last_vertex() {
+    if path.vertices >= walker.transport.max_surfaces() {
         return;
     }
     let Some(surface_hit) = walker.next_hit(path, draw) else { return };
     if let Some(through) = walker.straight(path, draw, &surface_hit)
-        && passes(walker, path, photon, &surface_hit.point, &through)
+        && pass_through(walker, path, photon, &surface_hit.point, &through)
     {
         return;
     }
@@ -124,8 +124,8 @@ fn advance<const N: usize, P: Polarization<N>>(
     let is_smooth = is_first || path.kind == PathKind::Other;
     let is_target = is_smooth && world.is_photon_target(surface_hit.hit.object, surface_hit.point.position);
     // Whether gathered photons contribute what smooth lobes scatter.
-    let is_left = is_target && over != Surfaces::Smooth && world.has_map() && photon.is_left_to_pass(world);
-    match over {
+    let is_left_to_map = is_target && scope != Surfaces::Smooth && world.has_map() && photon.is_for_light_pass(world);
+    match scope {
         Surfaces::Smooth if is_first && !is_target => return,
         Surfaces::All if is_first && !is_target => path.kind = PathKind::Wide,
         _ => {}
@@ -136,50 +136,50 @@ fn advance<const N: usize, P: Polarization<N>>(
     };
     path.vertices += 1;
     if world.ends_light_paths(surface_hit.hit.object) {
-        if over == Surfaces::All {
+        if scope == Surfaces::All {
             return;
         }
         path.resampled = false;
     }
-    let at = Interaction::new(world, draw, &path.arriving(), &surface_hit, boundary);
-    if over != Surfaces::Smooth && path.surfaces() == 1 && (path.hidden > 0 || !at.lobes.is_diffuse()) {
+    let at = Interaction::new(world, draw, &path.incident_ray(), &surface_hit, boundary);
+    if scope != Surfaces::Smooth && path.surfaces() == 1 && (path.hidden_vertices > 0 || !at.lobes.is_diffuse()) {
         // A path from the camera has to leave the next diffuse surface to reach this one, or to reach a light that a
         // hidden surface keeps from being sampled. It leaves none to sample a light.
         path.diffuse_left = path.diffuse_left.saturating_sub(1);
     }
     // The limits of bounces are those of paths from the camera.
-    let allowed = path.surfaces() <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
-    let shown = over != Surfaces::Smooth || path.vertices > 1;
-    if at.lobes.is_wide() && allowed && shown && !(path.is_narrow && at.lobes.is_narrow()) {
+    let is_allowed = path.surfaces() <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
+    let may_land = scope != Surfaces::Smooth || path.vertices > 1;
+    if at.lobes.is_wide() && is_allowed && may_land && !(path.is_narrow && at.lobes.is_narrow()) {
         land(walker, &PhotonHit { path, at: &at, photon });
     }
     let goes_on = path.surfaces() < world.method.max_bounces;
     let is_narrow = at.lobes.is_narrow() || (is_first && at.lobes.has_narrow_apart());
-    let tells_narrow = is_target && is_narrow && (over == Surfaces::Smooth || is_left);
-    if tells_narrow && goes_on {
-        let path = Path { key: path.key.child(BY_NARROW), ..*path };
-        scatter(walker, &path, &at.of_lobes(Lobes::NARROW), sampler);
+    let separates_narrow = is_target && is_narrow && (scope == Surfaces::Smooth || is_left_to_map);
+    if separates_narrow && goes_on {
+        let path = Path { key: path.key.child(NARROW_BRANCH), ..*path };
+        scatter(walker, &path, &at.with_lobes(Lobes::NARROW), sampler);
     }
-    if over == Surfaces::Smooth || !at.lobes.is_wide() {
-        bounce(walker, path, at, sampler);
-    } else if allowed && goes_on {
-        let narrow = if tells_narrow { Lobes::NARROW } else { Lobes::NONE };
-        scatter(walker, path, &at.of_lobes(Lobes::ALL.without(narrow)), sampler);
+    if scope == Surfaces::Smooth || !at.lobes.is_wide() {
+        scatter_smooth(walker, path, at, sampler);
+    } else if is_allowed && goes_on {
+        let narrow = if separates_narrow { Lobes::NARROW } else { Lobes::NONE };
+        scatter(walker, path, &at.with_lobes(Lobes::ALL.without(narrow)), sampler);
     }
 }
 
 /// Lets a photon pass through a surface. Returns false if the photon hits the surface as well. A photon that carries
 /// little does only one of both: otherwise, each of a stack of panes would double the photons that it reflects.
 #[cold]
-fn passes<const N: usize, P: Polarization<N>>(
+fn pass_through<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     path: &mut Path<N, P>,
     Photon { draw, sampler, .. }: &Photon<N>,
     point: &SurfacePoint,
     through: &PassThrough<N, P>,
 ) -> bool {
-    let (throughput, key) = (path.throughput.through(through.straight.share()), path.key.child(BEYOND));
-    let beyond = Path { throughput, key, polarization: through.polarization, ..path.passed(point) };
+    let (throughput, key) = (path.throughput.through(through.straight.share()), path.key.child(PASS_THROUGH_BRANCH));
+    let beyond = Path { throughput, key, polarization: through.polarization, ..path.beyond_surface(point) };
     let all = throughput == path.throughput;
     if all || walker.follows_all(path, draw) {
         *walker.pending.add(|| *path) = beyond;
@@ -187,7 +187,7 @@ fn passes<const N: usize, P: Polarization<N>>(
     }
     let shares = draw.shares(path.parted);
     let share = throughput.weight(shares) / path.throughput.weight(shares);
-    if sampler.four_plain(path.key, STRAIGHT)[0] < share {
+    if sampler.get_random_4d(path.key, PASS_THROUGH)[0] < share {
         *walker.pending.add(|| *path) = Path { throughput: throughput.scaled(1.0 / share), ..beyond };
         return true;
     }
@@ -204,31 +204,31 @@ fn scatter<const N: usize, P: Polarization<N>>(
     sampler: &Sampler,
 ) {
     let Interaction { material, point, context, flat, .. } = at;
-    let u = sampler.four(path.key, SCATTER);
+    let u = sampler.get_4d(path.key, SCATTER);
     walker.branches.clear();
     if point.shading == point.normal {
         material.scatter(context, [u[0], u[1]], &mut walker.branches);
         walker.polarize(path, at);
         let is_reciprocal = material.is_reciprocal();
-        let is_turned = |branch: &Branch<N>| !is_reciprocal && branch.pdf.is_some();
-        walker.branches.iter_mut().filter(|branch| is_turned(branch)).for_each(|branch| turn_back(at, branch));
-        send_forward(context, walker.branches.iter_mut().filter(|branch| !is_turned(branch)));
+        let needs_reversal = |branch: &Branch<N>| !is_reciprocal && branch.pdf.is_some();
+        walker.branches.iter_mut().filter(|branch| needs_reversal(branch)).for_each(|branch| reverse_share(at, branch));
+        convert_to_flux(context, walker.branches.iter_mut().filter(|branch| !needs_reversal(branch)));
     } else {
         // With shading normals that depend on the viewer, light may arrive from directions that the material never
         // draws. The material therefore draws only a part of the directions.
-        let by_material = if at.lobes.is_diffuse() { 0.0 } else { BY_MATERIAL };
-        if u[2] < by_material {
+        let material_probability = if at.lobes.is_diffuse() { 0.0 } else { MATERIAL_PROBABILITY };
+        if u[2] < material_probability {
             shading::scatter(material, context, *flat, [u[0], u[1]], &mut walker.branches);
         } else {
-            let wi = unit(Frame::about(*flat).to_world(cosine_hemisphere([u[0], u[1]])));
+            let wi = unit(Frame::about(*flat).to_world(sample_cosine_hemisphere([u[0], u[1]])));
             walker.branches.push(Branch::drawn(wi, Lanes::ZERO, 0.0));
         }
         walker.branches.retain_mut(|branch| {
             let (is_wide, cos) = (branch.pdf.is_some() && !branch.crosses, branch.wi.dot(*flat));
-            let Some(seen) = seen_from(at, branch.wi).filter(|_| is_wide && cos > 0.0) else { return false };
-            let of_material = || shading::evaluate(material, context, *flat, branch.wi).map_or(0.0, |(_, pdf)| pdf);
-            let of_material = if by_material > 0.0 { of_material() } else { 0.0 };
-            let pdf = by_material * of_material + (1.0 - by_material) * cos / PI;
+            let Some(seen) = bsdf_cos_seen_from(at, branch.wi).filter(|_| is_wide && cos > 0.0) else { return false };
+            let material_pdf = || shading::evaluate(material, context, *flat, branch.wi).map_or(0.0, |(_, pdf)| pdf);
+            let material_pdf = if material_probability > 0.0 { material_pdf() } else { 0.0 };
+            let pdf = material_probability * material_pdf + (1.0 - material_probability) * cos / PI;
             branch.share = seen * (cos / (context.wo.dot(*flat) * pdf)) as f32;
             branch.pdf = Some(pdf);
             true
@@ -236,20 +236,20 @@ fn scatter<const N: usize, P: Polarization<N>>(
         walker.polarize_forward(path, at);
     }
     // From the camera, a path has to leave the next surface to reach the first one, by whatever lobe.
-    let all_count = path.surfaces() == 1 && path.hidden == 0;
-    walker.follow(&mut OutgoingPath { all_count, ..OutgoingPath::new(walker.world, path, at) }, sampler);
+    let all_diffuse = path.surfaces() == 1 && path.hidden_vertices == 0;
+    walker.follow(&mut OutgoingPath { all_diffuse, ..OutgoingPath::new(walker.world, path, at) }, sampler);
 }
 
 /// Returns the BSDF, times the cosine of arrival, of a photon that the camera sees from its outgoing direction.
-fn seen_from<const N: usize>(at: &Interaction<N>, direction: DVec3) -> Option<Lanes<N>> {
+fn bsdf_cos_seen_from<const N: usize>(at: &Interaction<N>, direction: DVec3) -> Option<Lanes<N>> {
     let viewed = at.viewed_from(direction);
     shading::evaluate(at.material, &viewed.context, viewed.flat, at.context.wo).map(|(bsdf_cos, _)| bsdf_cos)
 }
 
 /// Replaces the share of a branch by that of the reverse direction: materials need not be reciprocal.
-fn turn_back<const N: usize>(at: &Interaction<N>, branch: &mut Branch<N>) {
+fn reverse_share<const N: usize>(at: &Interaction<N>, branch: &mut Branch<N>) {
     let forward = shading::evaluate(at.material, &at.context, at.flat, branch.wi);
-    let (Some((forward, _)), Some(back)) = (forward, seen_from(at, branch.wi)) else {
+    let (Some((forward, _)), Some(back)) = (forward, bsdf_cos_seen_from(at, branch.wi)) else {
         branch.share = Lanes::ZERO;
         return;
     };
@@ -260,34 +260,36 @@ fn turn_back<const N: usize>(at: &Interaction<N>, branch: &mut Branch<N>) {
 }
 
 /// Lets a photon continue over a smooth surface.
-fn bounce<const N: usize, P: Polarization<N>>(
+fn scatter_smooth<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     path: &Path<N, P>,
     at: Interaction<N>,
     sampler: &Sampler,
 ) {
-    let plain = shading::plain_normal(at.point, at.context.wo);
-    let at = at.by_normal(plain);
+    let unbent = shading::unbent_normal(at.point, at.context.wo);
+    let at = at.with_normal(unbent);
     let Interaction { material, point, context, .. } = &at;
     let goes_on = at.lobes.has_delta() && context.wo.dot(context.normal) > 0.0;
     if !goes_on || path.surfaces() >= walker.world.method.max_bounces {
         return;
     }
     walker.branches.clear();
-    let u = sampler.four_plain(path.key, SCATTER);
+    let u = sampler.get_random_4d(path.key, SCATTER);
     material.scatter(context, [u[0], u[1]], &mut walker.branches);
     let back = context.wo;
-    walker.branches.retain(|branch| branch.pdf.is_none() && shading::is_plain(point, branch.wi, back, branch.crosses));
+    walker
+        .branches
+        .retain(|branch| branch.pdf.is_none() && shading::is_reversible(point, branch.wi, back, branch.crosses));
     walker.polarize(path, &at);
     for branch in &mut walker.branches {
         branch.share = branch.share * shading::forward_factor(point, branch.wi, back) as f32;
     }
-    send_forward(context, walker.branches.iter_mut());
+    convert_to_flux(context, walker.branches.iter_mut());
     walker.follow(&mut OutgoingPath::new(walker.world, path, &at), sampler);
 }
 
 /// Turns shares of radiance that cross a smooth surface into shares of flux.
-fn send_forward<'a, const N: usize>(context: &ScatterContext<N>, branches: impl Iterator<Item = &'a mut Branch<N>>) {
+fn convert_to_flux<'a, const N: usize>(context: &ScatterContext<N>, branches: impl Iterator<Item = &'a mut Branch<N>>) {
     if let Some(forward) = context.forward() {
         branches.filter(|branch| branch.crosses).for_each(|branch| branch.share = branch.share * forward);
     }

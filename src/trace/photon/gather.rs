@@ -25,17 +25,17 @@ use crate::trace::received_light::{ReceivedLight, SourceId};
 use crate::trace::walk::{Excitation, Interaction, Path, Polarization, shading};
 
 /// Surfaces whose normals differ by more than 60 degrees belong to different sides or walls.
-const ALIKE: f64 = 0.5;
+const MIN_NORMAL_COSINE: f64 = 0.5;
 /// How far, in radii, a surface may lie from where it would continue another: flat faces at 30 degrees lie nearer.
-const STEP: f64 = 0.25;
+const MAX_STEP: f64 = 0.25;
 /// Height above the place, in radii, of the point that sees photons, unless something is in the way. From there, all
 /// that is gathered on a ball of the same radius is visible.
-const HIGH: f64 = 4.0;
+const MAX_HEIGHT: f64 = 4.0;
 /// Most points of the disc that are drawn: what covers less of it is too small to be seen.
-const MOST: u32 = 1 << 12;
+const MAX_POINTS: u32 = 1 << 12;
 /// Branches of random numbers, beyond those that a path may take: for these points, and for the photon that is tested.
-const POINTS: usize = 128;
-const CHOICE: usize = 129;
+const POINT_BRANCH: usize = 128;
+const CHOICE_BRANCH: usize = 129;
 
 /// The sum of what was found, and one photon of it, drawn in proportion to its contribution.
 struct GatheredSum<const N: usize> {
@@ -43,11 +43,11 @@ struct GatheredSum<const N: usize> {
     /// What each photon contributes, if requested.
     parts: Option<Vec<PhotonShare<N>>>,
     weight: f64,
-    drawn: Option<Chosen>,
+    drawn: Option<SampledPhoton>,
     u: f64,
 }
 
-struct Chosen {
+struct SampledPhoton {
     position: DVec3,
     rgb: [f64; 3],
     weight: f64,
@@ -91,65 +91,65 @@ pub struct GatherPoint<'a, const N: usize, P> {
 }
 
 /// What the sensor receives of one photon: the total, its S1, S2 and S3, and its spectrum.
-struct Seen<const N: usize> {
+struct ReceivedPhoton<const N: usize> {
     rgb: [f64; 3],
     stokes: Option<[[f64; 3]; 3]>,
     spectrum: PhotonSpectrum<N>,
 }
 
-impl<const N: usize> Seen<N> {
+impl<const N: usize> ReceivedPhoton<N> {
     /// Returns what the sensor receives of light that arrives in lanes.
     fn new(world: &World, received: &ReceivedLight<N>, stokes: Option<[Lanes<N>; 3]>) -> Self {
         let ReceivedLight { source, lanes, parted, .. } = *received;
-        let of_bands = stokes.filter(|_| world.layers.spectrum.is_some()).map(Box::new);
+        let band_stokes = stokes.filter(|_| world.layers.spectrum.is_some()).map(Box::new);
         Self {
             rgb: received.rgb(&world.responses),
             stokes: stokes.map(|stokes| stokes.map(|part| received.times(part, &world.responses))),
-            spectrum: PhotonSpectrum::Lanes { source, lanes: *lanes, parted, stokes: of_bands },
+            spectrum: PhotonSpectrum::Lanes { source, lanes: *lanes, parted, stokes: band_stokes },
         }
     }
 }
 
 /// A search for the photons around a place.
 struct PhotonSearch<'a, const N: usize, P> {
-    around: &'a GatherPoint<'a, N, P>,
+    center: &'a GatherPoint<'a, N, P>,
     kernel: &'a Kernel<N>,
     /// Whether the path arrives at the front of the surface.
-    front: bool,
+    is_front: bool,
     /// Whether light crosses the surface: then a surface close behind it is another one.
     crosses: bool,
     radius: f64,
 }
 
-/// Returns what the sensor receives of the photons around a place that a path has reached; if `apart`, photon by photon
+/// Returns what the sensor receives of the photons around a place that a path has reached; if `split`, photon by photon
 /// as well. How much of it polarization may change is estimated from the photon that is tested.
 pub fn gather<const N: usize, P: Polarization<N>>(
     photons: &PhotonMap<N, P>,
     kernel: &Kernel<N>,
-    around: &GatherPoint<N, P>,
+    center: &GatherPoint<N, P>,
     sampler: &Sampler,
-    apart: bool,
+    split: bool,
 ) -> Gathered<N> {
-    let GatherPoint { world, path, at, .. } = around;
-    let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
+    let GatherPoint { world, path, at, .. } = center;
+    let [u, u_gather, ..] = sampler.get_random_4d(path.key.child(CHOICE_BRANCH), 0);
     let crosses = at.lobes.is_transmissive();
     let has_any = photons.crosses || !crosses;
-    let Some(map) = world.method.map().filter(|map| has_any && whether < map.chance) else {
-        return Gathered { all: around.all([0.0; 3], 0.0), parts: apart.then(Vec::new) };
+    let Some(map) = world.method.map().filter(|map| has_any && u_gather < map.chance) else {
+        return Gathered { all: center.all([0.0; 3], 0.0), parts: split.then(Vec::new) };
     };
     let (position, radius) = (at.point.position, kernel.radius * world.scene.camera.pixel_width(path.length));
-    let search = PhotonSearch { around, kernel, front: at.flat.dot(at.point.normal) > 0.0, crosses, radius };
-    let mut found = GatheredSum { sum: [0.0; 3], parts: apart.then(Vec::new), weight: 0.0, drawn: None, u };
-    photons.together.near(position, radius, &mut |position, photon| {
-        search.add_together(&mut found, position, photon);
+    let search = PhotonSearch { center, kernel, is_front: at.flat.dot(at.point.normal) > 0.0, crosses, radius };
+    let mut found = GatheredSum { sum: [0.0; 3], parts: split.then(Vec::new), weight: 0.0, drawn: None, u };
+    photons.together.visit_near(position, radius, &mut |position, photon| {
+        search.add_joint(&mut found, position, photon);
     });
-    photons.alone.near(position, radius, &mut |position, photon| {
-        search.add_alone(&mut found, position, photon);
+    photons.alone.visit_near(position, radius, &mut |position, photon| {
+        search.add_single(&mut found, position, photon);
     });
     let (rgb, moved) = search.seen_of(&mut found, sampler);
     let (rgb, moved) = (rgb.map(|x| x / map.chance), moved / map.chance);
     found.parts.iter_mut().flatten().for_each(|part| part.factor /= map.chance);
-    Gathered { all: around.all(rgb, moved), parts: found.parts }
+    Gathered { all: center.all(rgb, moved), parts: found.parts }
 }
 
 impl<const N: usize, P: Polarization<N>> GatherPoint<'_, N, P> {
@@ -161,149 +161,153 @@ impl<const N: usize, P: Polarization<N>> GatherPoint<'_, N, P> {
     }
 
     /// Returns what one photon contributes, up to a factor.
-    fn brought<T, L>(&self, photon: &StoredPhoton<T, L>, light: LightId, rgb: [f64; 3], parted: bool) -> Contribution {
+    fn contribution<T, L>(
+        &self,
+        photon: &StoredPhoton<T, L>,
+        light: LightId,
+        rgb: [f64; 3],
+        parted: bool,
+    ) -> Contribution {
         let Self { world, path, at, excitation } = self;
         let (light, found, bounces) = (Some(light), FoundBy::Gathered, path.bounces + photon.surfaces);
-        let first = path.first_lobe(world, at, photon.back, photon.back.dot(at.flat) < 0.0);
+        let first = path.first_lobe(world, at, photon.wi, photon.wi.dot(at.flat) < 0.0);
         let dispersed = parted || excitation.is_some_and(|excitation| excitation.parted);
         Contribution { light, found, rgb, moved: 0.0, first, bounces, dispersed }
     }
 
-    /// Whether lanes part on the way of the path and of a photon from the direction `back`.
-    fn parted(&self, back: DVec3) -> bool {
-        self.path.parted || (self.at.parts && back.dot(self.at.flat) < 0.0)
+    /// Whether lanes part on the way of the path and of a photon from the direction `wi`.
+    fn parted(&self, wi: DVec3) -> bool {
+        self.path.parted || (self.at.parts && wi.dot(self.at.flat) < 0.0)
     }
 }
 
 impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
     /// Adds a photon whose lanes have not parted.
-    fn add_together(
-        &self,
-        found: &mut GatheredSum<N>,
-        position: DVec3,
-        photon: &StoredPhoton<JointLanes<N>, P::Stored>,
-    ) {
-        let Self { around, kernel, .. } = self;
-        let GatherPoint { world, path, at, excitation } = around;
+    fn add_joint(&self, found: &mut GatheredSum<N>, position: DVec3, photon: &StoredPhoton<JointLanes<N>, P::Stored>) {
+        let Self { center, kernel, .. } = self;
+        let GatherPoint { world, path, at, excitation } = center;
         let Some(density) = self.density(position, photon) else { return };
-        let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.context, at.flat, photon.back) else { return };
-        let (draw, parted, carries) = (at.context.draw, around.parted(photon.back), &photon.carries);
-        let by_heroes = draw.hero_factor(parted).is_some();
+        let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.context, at.flat, photon.wi) else { return };
+        let (draw, parted, payload) = (at.context.draw, center.parted(photon.wi), &photon.payload);
+        let has_heroes = draw.hero_factor(parted).is_some();
         let onto_heroes = |lanes: Lanes<N>| kernel.matching.onto_heroes(draw, lanes);
-        let flux = if by_heroes { onto_heroes(carries.flux) } else { carries.flux };
-        let read = if by_heroes { Some(P::read_stored(&photon.polarization, onto_heroes)) } else { None };
+        let flux = if has_heroes { onto_heroes(payload.flux) } else { payload.flux };
+        let read = if has_heroes { Some(P::convert_stored(&photon.polarization, onto_heroes)) } else { None };
         let light = read.as_ref().unwrap_or(&photon.polarization);
-        let joined = path.polarization.join(at, photon.back, light, &mut bsdf_cos);
+        let joined = path.polarization.join(at, photon.wi, light, &mut bsdf_cos);
         let lanes = path.throughput.of(bsdf_cos * flux);
-        let received = ReceivedLight { source: carries.light, draw, lanes: &lanes, parted };
-        let Seen { rgb, stokes, spectrum } = match excitation {
-            None => Seen::new(world, &received, joined.stokes()),
-            Some(dye) => dye.seen(world, &received, |seen| Seen::new(world, seen, dye.polarization.stokes())),
+        let received = ReceivedLight { source: payload.light, draw, lanes: &lanes, parted };
+        let ReceivedPhoton { rgb, stokes, spectrum } = match excitation {
+            None => ReceivedPhoton::new(world, &received, joined.stokes()),
+            Some(dye) => dye.seen(world, &received, |seen| ReceivedPhoton::new(world, seen, dye.polarization.stokes())),
         };
-        let contribution = around.brought(photon, carries.light, rgb, parted);
+        let contribution = center.contribution(photon, payload.light, rgb, parted);
         let part = PhotonShare { contribution, stokes, spectrum, factor: density };
-        found.add(world, position, part, || path.polarization.change_of_joined(at, photon.back, light, &joined, lanes));
+        found.add(world, position, part, || path.polarization.change_of_joined(at, photon.wi, light, &joined, lanes));
     }
 
     /// Adds a photon of one wavelength, whose lanes have parted.
-    fn add_alone(&self, found: &mut GatheredSum<N>, position: DVec3, photon: &StoredPhoton<SingleLane, P::Stored>) {
-        let Self { around, kernel, .. } = self;
-        let GatherPoint { world, path, at, excitation } = around;
-        let SingleLane { wavelength, light, weight, color } = &photon.carries;
-        let (draw, parted) = (at.context.draw, around.parted(photon.back));
-        let by_heroes = draw.hero_factor(parted).is_some();
-        let read = |lanes: Lanes<N>| match by_heroes {
-            true => kernel.matching.shared(draw, wavelength, lanes, parted),
+    fn add_single(&self, found: &mut GatheredSum<N>, position: DVec3, photon: &StoredPhoton<SingleLane, P::Stored>) {
+        let Self { center, kernel, .. } = self;
+        let GatherPoint { world, path, at, excitation } = center;
+        let SingleLane { wavelength, light, weight, color } = &photon.payload;
+        let (draw, parted) = (at.context.draw, center.parted(photon.wi));
+        let has_heroes = draw.hero_factor(parted).is_some();
+        let read = |lanes: Lanes<N>| match has_heroes {
+            true => kernel.matching.matching_light(draw, wavelength, lanes, parted),
             false => kernel.matching.read(wavelength, lanes),
         };
         // Most photons with parted wavelengths meet paths with other wavelengths.
-        if by_heroes && read(path.throughput.present()) == 0.0 {
+        if has_heroes && read(path.throughput.present()) == 0.0 {
             return;
         }
         let Some(density) = self.density(position, photon) else { return };
-        let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.context, at.flat, photon.back) else { return };
-        let joined = path.polarization.join(at, photon.back, &photon.polarization, &mut bsdf_cos);
+        let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.context, at.flat, photon.wi) else { return };
+        let joined = path.polarization.join(at, photon.wi, &photon.polarization, &mut bsdf_cos);
         let lanes = path.throughput.of(bsdf_cos);
         let seen = read(lanes);
-        let Seen { rgb, stokes, spectrum } = match excitation {
+        let ReceivedPhoton { rgb, stokes, spectrum } = match excitation {
             None => {
                 let share = |part: Lanes<N>| if seen == 0.0 { 0.0 } else { read(lanes * part) / seen };
                 let stokes = joined.stokes().map(|stokes| stokes.map(|part| color.map(|x| x * share(part))));
-                Seen { rgb: *color, stokes, spectrum: PhotonSpectrum::SingleLane(*wavelength) }
+                ReceivedPhoton { rgb: *color, stokes, spectrum: PhotonSpectrum::SingleLane(*wavelength) }
             }
             Some(dye) => {
                 let brightness = weight * dye.worth(world, *light, wavelength);
-                dye.seen_of(brightness, |seen| Seen::new(world, seen, dye.polarization.stokes()))
+                dye.seen_of(brightness, |seen| ReceivedPhoton::new(world, seen, dye.polarization.stokes()))
             }
         };
-        let contribution = around.brought(photon, *light, rgb, true);
+        let contribution = center.contribution(photon, *light, rgb, true);
         let part = PhotonShare { contribution, stokes, spectrum, factor: density * seen };
         found.add(world, position, part, || {
-            path.polarization.change_of_joined(at, photon.back, &photon.polarization, &joined, lanes)
+            path.polarization.change_of_joined(at, photon.wi, &photon.polarization, &joined, lanes)
         });
     }
 
     /// Returns the weight of a photon per area of the tangent plane at the place, if it counts.
     fn density<T, L>(&self, position: DVec3, photon: &StoredPhoton<T, L>) -> Option<f64> {
-        let GatherPoint { world, path, at, .. } = self.around;
-        let short = path.surfaces() + photon.surfaces - 1 <= world.method.max_bounces;
+        let GatherPoint { world, path, at, .. } = self.center;
+        let within_limit = path.surfaces() + photon.surfaces - 1 <= world.method.max_bounces;
         // Where a path looks for light at light vertices, those account for what surfaces scatter of the photon's
         // light.
-        let is_found = path.resampled && photon.is_resampled;
-        if !short || is_found || photon.crosses != self.crosses || !self.continues(position, photon.flat, photon.front)
+        let is_counted = path.resampled && photon.is_resampled;
+        if !within_limit
+            || is_counted
+            || photon.crosses != self.crosses
+            || !self.continues(position, photon.flat, photon.is_front)
         {
             return None;
         }
         let (way, squared_radius) = (position - at.point.position, self.radius * self.radius);
-        let beside = way - at.flat * way.dot(at.flat);
+        let tangential = way - at.flat * way.dot(at.flat);
         // The Epanechnikov kernel, which integrates to 1 over the disc.
-        let kernel = 2.0 * (1.0 - beside.length_squared() / squared_radius) / (PI * squared_radius);
+        let kernel = 2.0 * (1.0 - tangential.length_squared() / squared_radius) / (PI * squared_radius);
         Some(kernel * photon.flat.dot(at.flat).abs())
     }
 
     /// Whether a surface continues that of the place. `flat` is its unit normal on the side from which it is reached,
-    /// and `front` tells whether that is the front.
-    fn continues(&self, position: DVec3, flat: DVec3, front: bool) -> bool {
-        let Interaction { point, flat: own, .. } = self.around.at;
+    /// and `is_front` tells whether that is the front.
+    fn continues(&self, position: DVec3, flat: DVec3, is_front: bool) -> bool {
+        let Interaction { point, flat: own, .. } = self.center.at;
         let cos = flat.dot(*own);
         // The far face of a thin body, too, is reached from the other side, but from the front.
-        if cos.abs() < ALIKE || (cos < 0.0 && front == self.front) {
+        if cos.abs() < MIN_NORMAL_COSINE || (cos < 0.0 && is_front == self.is_front) {
             return false;
         }
         // A chord of a ball is perpendicular to the sum of the normals at its ends.
         let normals = *own + flat * cos.signum();
-        0.5 * (position - point.position).dot(normals).abs() <= STEP * self.radius
+        0.5 * (position - point.position).dot(normals).abs() <= MAX_STEP * self.radius
     }
 
     /// Returns the visible part of the sum, divided by the visible share of the disc, and how much polarization may
     /// change it.
     fn seen_of(&self, found: &mut GatheredSum<N>, sampler: &Sampler) -> ([f64; 3], f64) {
-        let GatherPoint { world, path, at, .. } = self.around;
+        let GatherPoint { world, path, at, .. } = self.center;
         let GatheredSum { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;
         let Some(chosen) = chosen else { return (sum, 0.0) };
-        let many = weight / chosen.weight;
-        let mut moved = many * chosen.change * world.amount(chosen.rgb);
+        let weight_ratio = weight / chosen.weight;
+        let mut moved = weight_ratio * chosen.change * world.amount(chosen.rgb);
         let up = at.point.leave(at.flat);
-        let far = HIGH * self.radius;
-        let free = world.scene.nearest(&up, 2.0 * far, &|_| true).map_or(far, |hit| 0.5 * hit.intersection.t);
-        let (height, from) = (far.min(free), up.at(far.min(free)));
+        let top = MAX_HEIGHT * self.radius;
+        let clearance = world.scene.nearest(&up, 2.0 * top, &|_| true).map_or(top, |hit| 0.5 * hit.intersection.t);
+        let (height, from) = (top.min(clearance), up.at(top.min(clearance)));
         if !self.sees(from, chosen.position, 1.0).unwrap_or(true) {
-            (0..3).for_each(|i| sum[i] -= chosen.rgb[i] * many);
+            (0..3).for_each(|i| sum[i] -= chosen.rgb[i] * weight_ratio);
             if let Some(parts) = parts {
-                parts[chosen.part].factor *= 1.0 - many;
+                parts[chosen.part].factor *= 1.0 - weight_ratio;
             }
             moved = 0.0;
         }
         let frame = Frame::about(at.flat);
-        let further = (height + STEP * self.radius) / height;
+        let stretch = (height + MAX_STEP * self.radius) / height;
         let mut drawn = 0;
-        while drawn < MOST {
-            let [a, b, c, d] = sampler.four_plain(path.key.child(POINTS), drawn);
+        while drawn < MAX_POINTS {
+            let [a, b, c, d] = sampler.get_random_4d(path.key.child(POINT_BRANCH), drawn);
             for u in [[a, b], [c, d]] {
                 drawn += 1;
-                let DVec2 { x, y } = self.radius * by_kernel(u);
+                let DVec2 { x, y } = self.radius * sample_kernel(u);
                 let to = at.point.position + frame.to_world(DVec3::new(x, y, 0.0));
-                if self.sees(from, to, further) == Some(true) {
+                if self.sees(from, to, stretch) == Some(true) {
                     let drawn = f64::from(drawn);
                     parts.iter_mut().flatten().for_each(|part| part.factor *= drawn);
                     return (sum.map(|x| x * drawn), moved * drawn);
@@ -313,17 +317,17 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         (sum, moved)
     }
 
-    /// Whether a ray to a point, or `further` times as far, hits a surface that continues this one; `None` for no hit.
-    fn sees(&self, from: DVec3, to: DVec3, further: f64) -> Option<bool> {
-        let scene = &self.around.world.scene;
+    /// Whether a ray to a point, or `stretch` times as far, hits a surface that continues this one; `None` for no hit.
+    fn sees(&self, from: DVec3, to: DVec3, stretch: f64) -> Option<bool> {
+        let scene = &self.center.world.scene;
         let way = to - from;
         let ray = Ray { origin: from, direction: unit(way) };
-        let hit = scene.nearest(&ray, way.length() * further, &|_| true)?;
+        let hit = scene.nearest(&ray, way.length() * stretch, &|_| true)?;
         let SurfacePoint { position, normal, .. } =
             scene.objects[hit.object as usize].shape.point(&ray, &hit.intersection);
-        let front = normal.dot(ray.direction) < 0.0;
-        let flat = if front { normal } else { -normal };
-        let continues = flat.dot(self.around.at.flat) > 0.0 && self.continues(position, flat, front);
+        let is_front = normal.dot(ray.direction) < 0.0;
+        let flat = if is_front { normal } else { -normal };
+        let continues = flat.dot(self.center.at.flat) > 0.0 && self.continues(position, flat, is_front);
         Some(continues && scene.material_of(hit.object).lobes().is_wide())
     }
 }
@@ -344,7 +348,7 @@ impl<const N: usize> GatheredSum<N> {
         // What is left of a random number after a choice is a random number again.
         let chance = weight / self.weight;
         if self.u < chance {
-            self.drawn = Some(Chosen { position, rgb, weight, part: number, change: change() });
+            self.drawn = Some(SampledPhoton { position, rgb, weight, part: number, change: change() });
             self.u /= chance;
         } else {
             self.u = (self.u - chance) / (1.0 - chance);
@@ -353,7 +357,7 @@ impl<const N: usize> GatheredSum<N> {
 }
 
 /// Returns a point of the unit disc, drawn by the kernel: the share within a squared radius q is 2 q - q^2.
-fn by_kernel([u, v]: [f64; 2]) -> DVec2 {
+fn sample_kernel([u, v]: [f64; 2]) -> DVec2 {
     let radius = (1.0 - (1.0 - u).sqrt()).sqrt();
     let (sin, cos) = libm::sincos(2.0 * PI * v);
     DVec2::new(radius * cos, radius * sin)

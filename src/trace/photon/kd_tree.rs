@@ -13,7 +13,7 @@ use crate::math::{Bounds, DVec3};
 pub struct KdTree<T> {
     /// Leaf by leaf; within each, in the order in which they were given.
     points: Vec<DVec3>,
-    found: Vec<T>,
+    values: Vec<T>,
     /// Level by level: the children of split i are 2 i + 1 and 2 i + 2.
     splits: Vec<Split>,
     bounds: Bounds,
@@ -27,22 +27,22 @@ struct Split {
 }
 
 /// Ranges of at most this many points are not split.
-const FEW: usize = 8;
+const MAX_LEAF_POINTS: usize = 8;
 
 impl<T> KdTree<T> {
     pub fn new(points: Vec<(DVec3, T)>) -> Self {
         let mut order: Vec<(DVec3, u32)> = (0..).zip(&points).map(|(number, point)| (point.0, number)).collect();
         let mut splits = Vec::new();
         split(&mut order, 0, &mut splits);
-        let mut given: Vec<Option<T>> = points.into_iter().map(|point| Some(point.1)).collect();
-        let found = order.iter().filter_map(|&(_, number)| given[number as usize].take()).collect();
+        let mut unordered: Vec<Option<T>> = points.into_iter().map(|point| Some(point.1)).collect();
+        let values = order.iter().filter_map(|&(_, number)| unordered[number as usize].take()).collect();
         let points: Vec<DVec3> = order.into_iter().map(|point| point.0).collect();
         let bounds = Bounds::around(points.iter().copied());
-        Self { points, found, splits, bounds }
+        Self { points, values, splits, bounds }
     }
 
     /// Visits all points closer to a place than a radius, in a fixed order.
-    pub fn near(&self, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
+    pub fn visit_near(&self, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
         let Bounds { min, max } = self.bounds;
         // Everything is infinitely far from an empty tree.
         if (place.clamp(min, max) - place).length_squared() < radius * radius {
@@ -52,8 +52,8 @@ impl<T> KdTree<T> {
 
     fn visit(&self, node: usize, range: Range<usize>, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
         let Range { start, end } = range;
-        if end - start <= FEW {
-            self.look(start..end, place, radius, visit);
+        if end - start <= MAX_LEAF_POINTS {
+            self.visit_leaf(start..end, place, radius, visit);
             return;
         }
         let (Split { at, axis }, middle) = (self.splits[node], start + (end - start) / 2);
@@ -66,10 +66,10 @@ impl<T> KdTree<T> {
         }
     }
 
-    fn look(&self, range: Range<usize>, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
+    fn visit_leaf(&self, range: Range<usize>, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
         for (point, number) in self.points[range.clone()].iter().zip(range) {
             if (*point - place).length_squared() < radius * radius {
-                visit(*point, &self.found[number]);
+                visit(*point, &self.values[number]);
             }
         }
     }
@@ -77,7 +77,7 @@ impl<T> KdTree<T> {
 
 /// Puts points in the order of a tree, which depends only on their numbers and places.
 fn split(points: &mut [(DVec3, u32)], node: usize, splits: &mut Vec<Split>) {
-    if points.len() <= FEW {
+    if points.len() <= MAX_LEAF_POINTS {
         points.sort_unstable_by_key(|point| point.1);
         return;
     }
@@ -105,21 +105,21 @@ mod tests {
     fn all_points_within_the_radius_are_visited_once() {
         for count in [0, 1, 8, 9, 100, 40_000] {
             let place = |i: u32| {
-                let [x, y, z, _] = Sampler::new(7, [0, 0], i).four_plain(BranchKey::CAMERA, 0);
+                let [x, y, z, _] = Sampler::new(7, [0, 0], i).get_random_4d(BranchKey::CAMERA, 0);
                 // Many share a coordinate along one axis, as on a floor.
                 DVec3::new(x, (8.0 * y).floor(), 0.1 * z)
             };
             let map = KdTree::new((0..count).map(|i| (place(i), i)).collect());
             for (number, radius) in [0.0, 0.01, 0.1, 1.0, 20.0].into_iter().enumerate() {
                 let from = place(1_000_000 + number as u32);
-                let mut found = Vec::new();
-                map.near(from, radius, &mut |point, &i| {
+                let mut values = Vec::new();
+                map.visit_near(from, radius, &mut |point, &i| {
                     assert_eq!(point, place(i));
-                    found.push(i);
+                    values.push(i);
                 });
-                found.sort_unstable();
-                let wanted: Vec<u32> = (0..count).filter(|&i| (place(i) - from).length() < radius).collect();
-                assert_eq!(found, wanted, "{count} points, radius {radius}");
+                values.sort_unstable();
+                let expected: Vec<u32> = (0..count).filter(|&i| (place(i) - from).length() < radius).collect();
+                assert_eq!(values, expected, "{count} points, radius {radius}");
             }
         }
     }

@@ -45,7 +45,7 @@ pub struct LightVertices<const N: usize> {
     /// D.
     near: f64,
     /// Probability that camera paths continue for light that light paths do not find; `None` where they find all.
-    pub rest: Option<f64>,
+    pub rest_chance: Option<f64>,
     /// The instructions that weigh candidates.
     instructions: Instructions,
     pub stats: Stats,
@@ -53,22 +53,22 @@ pub struct LightVertices<const N: usize> {
 
 /// Rows of candidates, and vertices of a row. There are 64 candidates in all: with 32, an image is noisier by a sixth.
 const ROWS: usize = 8;
-const ROW: usize = 8;
-const CANDIDATES: usize = ROWS * ROW;
+const PER_ROW: usize = 8;
+const CANDIDATES: usize = ROWS * PER_ROW;
 /// Cells of the Morton curve per D.
-const CELLS: f64 = 25.0;
+const CELLS_PER_D: f64 = 25.0;
 
 /// The data of some vertices that a choice among them needs; absent vertices have no power.
 #[derive(Clone, Debug)]
 struct Candidates {
-    place: [OfCandidates; 3],
-    flat: [OfCandidates; 3],
+    place: [PerCandidate; 3],
+    flat: [PerCandidate; 3],
     /// X + Y + Z of what leaves, as the sensor sees it, times how often it is seen; 1 for the brightest vertex.
-    power: OfCandidates,
+    power: PerCandidate,
 }
 
 /// A number for each candidate: for each place in a row, those of all rows side by side, which are summed at once.
-type OfCandidates = [[f32; ROWS]; ROW];
+type PerCandidate = [[f32; ROWS]; PER_ROW];
 
 /// Whether light between surfaces is looked for at vertices on this surface. It must be diffuse and shaded by its own
 /// normal.
@@ -79,21 +79,21 @@ pub fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -> bool 
 impl<const N: usize> LightVertices<N> {
     /// Deals vertices into sets of candidates. `powers` returns what leaves each of them, as the sensor sees it, times
     /// how often it is seen; 1 for the brightest.
-    pub fn dealt(
+    pub fn new(
         mut vertices: Vec<LightVertex<N>>,
         center: DVec3,
         near: f64,
-        rest: Option<f64>,
+        rest_chance: Option<f64>,
         stats: Stats,
         powers: impl FnOnce(&[LightVertex<N>]) -> Vec<f32>,
     ) -> Self {
-        vertices.sort_by_cached_key(|vertex| morton((vertex.position - center) * (CELLS / near)));
+        vertices.sort_by_cached_key(|vertex| morton((vertex.position - center) * (CELLS_PER_D / near)));
         let count = vertices.len().div_ceil(CANDIDATES);
         let mut candidates = vec![Candidates::EMPTY; count];
         for (number, (vertex, power)) in vertices.iter().zip(powers(&vertices)).enumerate() {
             candidates[number % count].set(number / count, (vertex.position - center) / near, vertex.flat, power);
         }
-        Self { candidates, vertices, center, near, rest, instructions: Instructions::best(), stats }
+        Self { candidates, vertices, center, near, rest_chance, instructions: Instructions::best(), stats }
     }
 
     /// Returns D^2: of light from a distance d, the part d^2 / (d^2 + D^2) is looked for at vertices.
@@ -103,11 +103,11 @@ impl<const N: usize> LightVertices<N> {
 
     /// Whether vertices contribute the light of a ray from a light, beyond the first surface that it hits.
     pub fn carry(&self, world: &World, light: LightId, ray: &Ray) -> bool {
-        self.rest.is_none() || world.is_found_by_light_paths(light, ray)
+        self.rest_chance.is_none() || world.is_found_by_light_paths(light, ray)
     }
 
     /// Returns the probability that a bounce continues from a surface at a distance whose light is found at vertices.
-    pub fn complement(&self, distance_squared: f64) -> f64 {
+    pub fn continuation_probability(&self, distance_squared: f64) -> f64 {
         self.near_squared() / (distance_squared + self.near_squared())
     }
 
@@ -116,14 +116,14 @@ impl<const N: usize> LightVertices<N> {
         let count = self.candidates.len();
         let number = ((u * count as f64) as usize).min(count.checked_sub(1)?);
         let [from, flat] = [(from - self.center) / self.near, flat].map(|v| v.as_vec3().to_array());
-        let weights = self.instructions.run(Weighing { candidates: &self.candidates[number], from, flat });
+        let weights = self.instructions.run(CandidateWeights { candidates: &self.candidates[number], from, flat });
         let rows =
             weights.iter().fold([0.0; ROWS], |rows, weights| std::array::from_fn(|row| rows[row] + weights[row]));
         let total: f32 = rows.iter().sum();
         let (row, left) = chosen(rows, v as f32 * total)?;
         let (place, _) = chosen(weights.map(|weights| weights[row]), left)?;
         let factor = count as f64 * f64::from(total) / f64::from(weights[place][row]);
-        factor.is_finite().then(|| (&self.vertices[(row * ROW + place) * count + number], factor))
+        factor.is_finite().then(|| (&self.vertices[(row * PER_ROW + place) * count + number], factor))
     }
 }
 
@@ -143,10 +143,10 @@ fn chosen<const COUNT: usize>(weights: [f32; COUNT], share: f32) -> Option<(usiz
 
 impl Candidates {
     const EMPTY: Self =
-        Self { place: [[[0.0; ROWS]; ROW]; 3], flat: [[[0.0; ROWS]; ROW]; 3], power: [[0.0; ROWS]; ROW] };
+        Self { place: [[[0.0; ROWS]; PER_ROW]; 3], flat: [[[0.0; ROWS]; PER_ROW]; 3], power: [[0.0; ROWS]; PER_ROW] };
 
     fn set(&mut self, slot: usize, place: DVec3, flat: DVec3, power: f32) {
-        let (row, slot) = (slot / ROW, slot % ROW);
+        let (row, slot) = (slot / PER_ROW, slot % PER_ROW);
         for axis in 0..3 {
             (self.place[axis][slot][row], self.flat[axis][slot][row]) = (place[axis] as f32, flat[axis] as f32);
         }
@@ -155,18 +155,18 @@ impl Candidates {
 }
 
 /// Estimates what each candidate would contribute to a white diffuse surface.
-struct Weighing<'a> {
+struct CandidateWeights<'a> {
     candidates: &'a Candidates,
     /// The point of the surface in the coordinates of the candidates, and its unit normal.
     from: [f32; 3],
     flat: [f32; 3],
 }
 
-impl Computation for Weighing<'_> {
-    type Output = OfCandidates;
+impl Computation for CandidateWeights<'_> {
+    type Output = PerCandidate;
 
     #[inline(always)]
-    fn run<V: Vectors>(self, _: V) -> OfCandidates {
+    fn run<V: Vectors>(self, _: V) -> PerCandidate {
         let Self { candidates: Candidates { place, flat: flats, power }, from, flat } = self;
         // A single instruction; `max` takes several to handle NaN.
         let positive = |x: f32| if x > 0.0 { x } else { 0.0 };
@@ -205,7 +205,7 @@ mod tests {
     #[test]
     fn plain_and_wide_instructions_weigh_candidates_alike() {
         let number = |i: usize, purpose: u32| {
-            Sampler::new(3, [0, 0], i as u32).four_plain(BranchKey::CAMERA, purpose).map(|u| 4.0 * u - 2.0)
+            Sampler::new(3, [0, 0], i as u32).get_random_4d(BranchKey::CAMERA, purpose).map(|u| 4.0 * u - 2.0)
         };
         let mut candidates = Candidates::EMPTY;
         for slot in 0..CANDIDATES - 3 {
@@ -218,7 +218,7 @@ mod tests {
             // Also from the place of a vertex itself, where its weight is 0 / 0.
             let from = if i < 8 { candidates.place.map(|axis| axis[i][0]) } else { [x, y, z].map(|x| x as f32) };
             let weigh = |instructions: Instructions| {
-                instructions.run(Weighing { candidates: &candidates, from, flat: [a, b, c].map(|x| x as f32) })
+                instructions.run(CandidateWeights { candidates: &candidates, from, flat: [a, b, c].map(|x| x as f32) })
             };
             let weights = weigh(Instructions::Plain);
             assert_eq!(weights, weigh(Instructions::best()));

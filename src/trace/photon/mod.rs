@@ -12,9 +12,9 @@ mod photon_map;
 mod splat;
 mod usefulness;
 
-pub use batch::{Batch, batches, batches_of_pass, send};
+pub use batch::{Batch, batches, batches_of_pass, trace_batch};
 pub use gather::{GatherPoint, Gathered, PhotonShare, PhotonSpectrum, gather};
-pub use light_paths::{LightPaths, SHARED, can_be_followed, few_vertices, light_paths_reach};
+pub use light_paths::{LightPaths, SAMPLES_PER_SET, can_trace_light_paths, light_paths_reach, pilot_vertices};
 pub use light_vertices::{LightVertex, LightVertices, holds_vertices};
 pub use pass_light::PassLight;
 pub use photon_map::{PhotonMap, photons, store_photon};

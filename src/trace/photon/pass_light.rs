@@ -1,6 +1,6 @@
 //! What all camera samples of a pass share: gathered photons and vertices of light paths.
 
-use super::light_paths::{LightPaths, SHARED};
+use super::light_paths::{LightPaths, SAMPLES_PER_SET};
 use super::light_vertices::LightVertices;
 use super::photon_map::{PhotonMap, photons};
 use crate::trace::World;
@@ -20,8 +20,9 @@ impl<const N: usize, P: Polarization<N>> PassLight<N, P> {
         let numbers = &pass.numbers;
         let vertices = match LightPaths::new(world, pass.seed) {
             Some(light_paths) => {
-                let shared = |first: u32| light_paths.shared::<N, P>(first..(first + SHARED).min(numbers.end));
-                numbers.clone().step_by(SHARED as usize).map(shared).collect()
+                let vertices_for =
+                    |first: u32| light_paths.vertices_for::<N, P>(first..(first + SAMPLES_PER_SET).min(numbers.end));
+                numbers.clone().step_by(SAMPLES_PER_SET as usize).map(vertices_for).collect()
             }
             None => Vec::new(),
         };
@@ -30,7 +31,7 @@ impl<const N: usize, P: Polarization<N>> PassLight<N, P> {
 
     /// Returns the vertices that a sample uses, counted from the first sample of the pass.
     pub fn vertices(&self, sample: u32) -> Option<&LightVertices<N>> {
-        self.vertices.get((sample / SHARED) as usize)
+        self.vertices.get((sample / SAMPLES_PER_SET) as usize)
     }
 
     pub fn sent(&self) -> u64 {

@@ -4,7 +4,7 @@
 //! Each photon draws its own wavelengths, as each camera sample does. One whose lanes have not parted is stored with
 //! its fixed lanes. If they have parted, each wavelength is stored separately, with the color of its light.
 
-use super::batch::{batches_of_pass, send};
+use super::batch::{batches_of_pass, trace_batch};
 use super::follow::{Photon, PhotonHit};
 use super::kd_tree::KdTree;
 use super::kernel::Kernel;
@@ -21,11 +21,11 @@ use crate::trace::walk::{Interaction, Polarization, Polarized, Walker};
 #[derive(Clone, Debug)]
 pub struct StoredPhoton<T, L = Polarized> {
     /// Unit vector back along its path.
-    pub back: DVec3,
+    pub wi: DVec3,
     /// The surface's own unit normal there, on the side it came from.
     pub flat: DVec3,
     /// Whether that is the front.
-    pub front: bool,
+    pub is_front: bool,
     /// Whether light crosses the surface.
     pub crosses: bool,
     /// Number of surfaces it hit, the last one included.
@@ -34,7 +34,7 @@ pub struct StoredPhoton<T, L = Polarized> {
     pub is_resampled: bool,
     /// How its light is polarized.
     pub polarization: L,
-    pub carries: T,
+    pub payload: T,
 }
 
 #[derive(Clone, Debug)]
@@ -62,7 +62,7 @@ pub struct PhotonMap<const N: usize, P: Polarization<N> = Polarized> {
     pub crosses: bool,
     pub kernel: Kernel<N>,
     /// A kernel that blurs half as much, if the blur is to be measured.
-    pub half: Option<Kernel<N>>,
+    pub half_blur: Option<Kernel<N>>,
     pub sent: u64,
     pub stats: Stats,
 }
@@ -81,18 +81,19 @@ pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -
     let targets = &*pass.targets(world, targets, world.method.map()?.count);
     let (seed, before) = pass.photon_seed();
     let batches = batches_of_pass(targets, before, seed ^ SEED);
-    let done =
-        in_parallel(batches.len(), &|number| send(world, targets, batches[number], false, &store_photon::<N, P>));
+    let done = in_parallel(batches.len(), &|number| {
+        trace_batch(world, targets, batches[number], false, &store_photon::<N, P>)
+    });
     let mut stats = Stats::default();
     let (mut together, mut alone) = (Vec::new(), Vec::new());
     for sent in done {
         stats += sent.stats;
         for (place, kept) in sent.kept {
             match kept {
-                PhotonRecord::JointLanes(photon) if photon.carries.flux.0.iter().all(|x| x.is_finite()) => {
+                PhotonRecord::JointLanes(photon) if photon.payload.flux.0.iter().all(|x| x.is_finite()) => {
                     together.push((place, photon));
                 }
-                PhotonRecord::SingleLane(photon) if photon.carries.weight.is_finite() => alone.push((place, photon)),
+                PhotonRecord::SingleLane(photon) if photon.payload.weight.is_finite() => alone.push((place, photon)),
                 _ => stats.non_finite += 1,
             }
         }
@@ -100,8 +101,8 @@ pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -
     let sent = batches.iter().map(|batch| batch.count).sum();
     let crosses = together.iter().any(|(_, photon)| photon.crosses) || alone.iter().any(|(_, photon)| photon.crosses);
     let (together, alone) = (KdTree::new(together), KdTree::new(alone));
-    let half = pass.replicate.map(|_| kernel.half(world));
-    Some(PhotonMap { together, alone, crosses, kernel, half, sent, stats })
+    let half_blur = pass.replicate.map(|_| kernel.half_blur(world));
+    Some(PhotonMap { together, alone, crosses, kernel, half_blur, sent, stats })
 }
 
 /// Stores a photon where it lands.
@@ -114,33 +115,33 @@ pub fn store_photon<const N: usize, P: Polarization<N>>(
     let Interaction { context, flat, point, .. } = at;
     let flux = photon_hit.flux(world) * (1.0 / context.wo.dot(*flat).abs()) as f32;
     let photon = StoredPhoton {
-        back: context.wo,
+        wi: context.wo,
         flat: *flat,
-        front: flat.dot(point.normal) > 0.0,
+        is_front: flat.dot(point.normal) > 0.0,
         crosses: at.lobes.is_transmissive(),
         surfaces: path.surfaces(),
         is_resampled: path.resampled,
-        polarization: path.polarization.landed(at),
-        carries: (),
+        polarization: path.polarization.to_stored(at),
+        payload: (),
     };
     let (light, response) = (*light, &world.responses[*light]);
-    let by_heroes = Matching::<N>::alone(context.draw, flux, path.parted, |lane, wavelength, weight| {
+    let is_split = Matching::<N>::alone(context.draw, flux, path.parted, |lane, wavelength, weight| {
         let of_lane = |lanes: Lanes<N>| Lanes([lanes[lane]; N]);
-        let polarization = P::read_stored(&photon.polarization, of_lane);
+        let polarization = P::convert_stored(&photon.polarization, of_lane);
         let color = wavelength.worth(response).map(|x| weight * x);
-        let carries = SingleLane { wavelength, light, weight, color };
-        kept.push((point.position, PhotonRecord::SingleLane(photon.with(polarization, carries))));
+        let payload = SingleLane { wavelength, light, weight, color };
+        kept.push((point.position, PhotonRecord::SingleLane(photon.with(polarization, payload))));
     });
-    if !by_heroes {
+    if !is_split {
         let polarization = photon.polarization.clone();
         kept.push((point.position, PhotonRecord::JointLanes(photon.with(polarization, JointLanes { flux, light }))));
     }
 }
 
 impl<L> StoredPhoton<(), L> {
-    fn with<T>(&self, polarization: L, carries: T) -> StoredPhoton<T, L> {
-        let Self { back, flat, front, crosses, surfaces, is_resampled, .. } = *self;
-        StoredPhoton { back, flat, front, crosses, surfaces, is_resampled, polarization, carries }
+    fn with<T>(&self, polarization: L, payload: T) -> StoredPhoton<T, L> {
+        let Self { wi, flat, is_front, crosses, surfaces, is_resampled, .. } = *self;
+        StoredPhoton { wi, flat, is_front, crosses, surfaces, is_resampled, polarization, payload }
     }
 }
 
@@ -148,8 +149,8 @@ impl<const N: usize, P: Polarization<N>> PhotonMap<N, P> {
     /// Returns the number of photons within a radius of a place.
     pub fn count_near(&self, place: DVec3, radius: f64) -> u64 {
         let mut count = 0;
-        self.together.near(place, radius, &mut |_, _| count += 1);
-        self.alone.near(place, radius, &mut |_, _| count += 1);
+        self.together.visit_near(place, radius, &mut |_, _| count += 1);
+        self.alone.visit_near(place, radius, &mut |_, _| count += 1);
         count
     }
 }

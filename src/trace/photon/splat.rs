@@ -14,7 +14,7 @@ use crate::trace::media;
 use crate::trace::received_light::ReceivedLight;
 use crate::trace::spectrum_sample::Spectrum;
 use crate::trace::walk::{
-    DYE, Interaction, Occluders, Polarization, SeenPhoton, SeenThrough, VisibilityTest, Walker, parts, shading,
+    DYE_BRANCH, Interaction, Occluders, Polarization, SeenPhoton, SeenThrough, VisibilityTest, Walker, parts, shading,
 };
 
 /// Use of the random numbers where the camera sees a photon: the point of the lens.
@@ -38,9 +38,9 @@ pub struct Splat {
     /// Whether its wavelengths parted on the way.
     pub dispersed: bool,
     /// Whether the photon is of the first half of those sent with it.
-    pub early: bool,
+    pub first_half: bool,
     /// Whether it landed on a shadow catcher.
-    pub caught: bool,
+    pub on_catcher: bool,
     /// The lobe by which that surface scatters it to the camera, if layers tell lobes apart.
     pub first: Option<FirstLobe>,
 }
@@ -78,7 +78,7 @@ impl PlacedSplat {
         let columns = first(place.x, 0)..=last(place.x, 0);
         let rows = first(place.y, 1)..=last(place.y, 1);
         // Shadow catchers show no light, but the share of it that is missing.
-        let is_caught = self.splat.caught;
+        let is_caught = self.splat.on_catcher;
         let weighed = move |[x, y]: [i32; 2]| {
             let offset = place - DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
             let weight = if is_caught { film.filter.positive_value(offset) } else { film.filter.value(offset) };
@@ -97,7 +97,7 @@ struct CameraConnection<'v, 'a, const N: usize, P: Polarization<N>> {
     /// Places on the film that are near enough to the window.
     places: Vec<DVec2>,
     /// Whether the camera is on the side where the photon arrived, and the surface as the camera sees it.
-    same: bool,
+    same_side: bool,
     viewed: Interaction<'v, N>,
     seen_through: SeenThrough,
 }
@@ -116,11 +116,11 @@ pub fn splat_photon<const N: usize, P: Polarization<N>>(
         Visibility::ShadowCatcher => &[SeenThrough::Holes, SeenThrough::Panes],
     };
     for &seen_through in all {
-        let Some(view) = CameraConnection::new(walker, photon_hit, seen_through) else { return };
-        view.keep(view.scattered(), splats);
+        let Some(connection) = CameraConnection::new(walker, photon_hit, seen_through) else { return };
+        connection.keep(connection.scattered(), splats);
         if let Some(dyes) = &world.dyes {
             for (number, dye) in dyes.of(&world.scene, photon_hit.at.object).enumerate() {
-                view.keep(view.shone_by(dyes, dye, number), splats);
+                connection.keep(connection.emitted_by_dye(dyes, dye, number), splats);
             }
         }
     }
@@ -137,7 +137,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         let Interaction { flat, point, .. } = at;
         let world = walker.world;
         let (camera, film) = (&world.scene.camera, world.scene.film);
-        let u = if camera.has_lens() { photon.sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
+        let u = if camera.has_lens() { photon.sampler.get_random_4d(path.key, LENS) } else { [0.5; 4] };
         let seen = camera.see(point.position, [u[0], u[1]])?;
         let (window, reach) = (film.window(), film.filter.reach());
         let mut places = camera.places(seen.film, reach + f64::from(film.overscan.widest()));
@@ -147,13 +147,13 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         if places.is_empty() {
             return None;
         }
-        let same = seen.direction.dot(*flat) > 0.0;
+        let same_side = seen.direction.dot(*flat) > 0.0;
         let viewed = at.viewed_from(seen.direction);
-        Some(Self { walker, photon_hit, seen, places, same, viewed, seen_through })
+        Some(Self { walker, photon_hit, seen, places, same_side, viewed, seen_through })
     }
 
     /// Returns what reaches the camera of light that leaves the place toward it, and how it is polarized on its way.
-    fn arriving(
+    fn arriving_light(
         &self,
         draw: &Draw<N>,
         start: impl FnOnce() -> P,
@@ -163,23 +163,23 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         let ray = at.point.leave(self.seen.direction);
         let distance = (self.seen.start - ray.origin).length();
         let world = self.walker.world;
-        let there = at.boundary.sides()[usize::from(!self.same)];
+        let local_medium = at.boundary.sides()[usize::from(!self.same_side)];
         let inside = match world.hides_objects && world.has_media {
             true => world.seen_media(&ray).inside(&world.scene),
-            false => there,
+            false => local_medium,
         };
         let ends = RayEnds { left: path.left, ..RayEnds::default() };
         let (occluders, last_occluder) = (Occluders::Seen(self.seen_through), &self.walker.last_occluder);
         let segment = VisibilityTest { ray: &ray, distance, ends, inside, occluders, last_occluder };
-        let (arriving, polarization) = segment.arriving(world, draw, start, light)?;
-        if inside == there {
+        let (arriving, polarization) = segment.arriving_light(world, draw, start, light)?;
+        if inside == local_medium {
             return Some((arriving, polarization));
         }
-        Some((arriving * media::change_of_radiance(&world.scene, draw, [inside, there]), polarization))
+        Some((arriving * media::radiance_factor(&world.scene, draw, [inside, local_medium]), polarization))
     }
 
     /// Returns the camera ray that sees the place.
-    fn back(&self) -> Ray {
+    fn camera_ray(&self) -> Ray {
         Ray { origin: self.seen.start, direction: -self.seen.direction }
     }
 
@@ -196,51 +196,51 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
 
     /// Returns what the surface scatters toward the camera.
     fn scattered(&self) -> Option<Splat> {
-        let Self { photon_hit, viewed, same, .. } = self;
+        let Self { photon_hit, viewed, same_side, .. } = self;
         let PhotonHit { path, at, .. } = photon_hit;
         let Interaction { context, material, .. } = at;
         let world = self.walker.world;
         let (mut bsdf_cos, _) = shading::evaluate(material, &viewed.context, viewed.flat, context.wo)?;
-        let parted = path.parted || (!same && parts(at.lobes, material, &viewed.context));
+        let parted = path.parted || (!same_side && parts(at.lobes, material, &viewed.context));
         let start = || path.polarization.forward(viewed, context.wo, &mut bsdf_cos);
-        let (shone, on_its_way) = self.arriving(context.draw, start, || photon_hit.shone(world))?;
-        let polarized = path.polarization.seen(at, &viewed.context, &on_its_way, world, &self.back());
-        let arriving = polarized.factor.map_or(bsdf_cos * shone, |factor| bsdf_cos * shone * factor);
+        let (emission, on_its_way) = self.arriving_light(context.draw, start, || photon_hit.emission(world))?;
+        let polarized = path.polarization.seen(at, &viewed.context, &on_its_way, world, &self.camera_ray());
+        let arriving = polarized.factor.map_or(bsdf_cos * emission, |factor| bsdf_cos * emission * factor);
         let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
         let white = world.layers.white.as_ref();
-        let lobe = || FirstLobe::scattered(white, material, at.lobes, &viewed.context, context.wo, !same);
-        let first = world.layers.lobes_apart.then(lobe);
+        let lobe = || FirstLobe::scattered(white, material, at.lobes, &viewed.context, context.wo, !same_side);
+        let first = world.layers.separates_lobes.then(lobe);
         let received = ReceivedLight { source: photon_hit.photon.light, draw: context.draw, lanes, parted };
         Some(self.splat(&received, &polarized, parted, first))
     }
 
     /// Returns what a dye emits toward the camera; `number` counts the dyes of the material.
-    fn shone_by(&self, dyes: &Dyes, dye: usize, number: usize) -> Option<Splat> {
+    fn emitted_by_dye(&self, dyes: &Dyes, dye: usize, number: usize) -> Option<Splat> {
         let Self { photon_hit, viewed, .. } = self;
         let PhotonHit { path, at, photon } = photon_hit;
         let world = self.walker.world;
-        if !self.same {
+        if !self.same_side {
             return None;
         }
         let (bsdf_cos, _) = shading::evaluate(&dyes.white, &viewed.context, viewed.flat, at.context.wo)?;
-        let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * photon_hit.shone(world));
+        let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * photon_hit.emission(world));
         let parted = path.parted;
         let brightness =
-            dyes.excited(dye, &ReceivedLight { source: photon.light, draw: at.context.draw, lanes, parted });
+            dyes.brightness(dye, &ReceivedLight { source: photon.light, draw: at.context.draw, lanes, parted });
         // The dye emits other wavelengths than those of the photon, whose lanes may have parted.
-        let draw = &world.method.basis.draw(photon.sampler.four_plain(path.key.child(DYE + dye), LENS)[0]);
+        let draw = &world.method.basis.draw(photon.sampler.get_random_4d(path.key.child(DYE_BRANCH + dye), LENS)[0]);
         let mut shares = Vec::new();
         at.material.shares_of_dyes(&ScatterContext { draw, ..viewed.context }, Lanes::ONE, &mut shares);
-        let polarization = path.polarization.exciting();
+        let polarization = path.polarization.for_excitation();
         let mut unpolarized = Lanes::ONE;
-        let start = || polarization.forward(&viewed.of_dye(&dyes.white, draw), at.context.wo, &mut unpolarized);
-        let (arriving, on_its_way) = self.arriving(draw, start, || draw.start())?;
+        let start = || polarization.forward(&viewed.as_dye(&dyes.white, draw), at.context.wo, &mut unpolarized);
+        let (arriving, on_its_way) = self.arriving_light(draw, start, || draw.start())?;
         let polarized =
-            polarization.seen(&at.of_dye(&dyes.white, draw), &viewed.context, &on_its_way, world, &self.back());
+            polarization.seen(&at.as_dye(&dyes.white, draw), &viewed.context, &on_its_way, world, &self.camera_ray());
         let arriving =
             polarized.factor.map_or(arriving, |factor| arriving * factor) * shares[number] * brightness as f32;
         let received = ReceivedLight { source: dyes.source(dye), draw, lanes: &arriving, parted: false };
-        let first = world.layers.lobes_apart.then_some(FirstLobe::Reflected { diffuse: [1.0; 3] });
+        let first = world.layers.separates_lobes.then_some(FirstLobe::Reflected { diffuse: [1.0; 3] });
         Some(self.splat(&received, &polarized, parted, first))
     }
 
@@ -259,11 +259,11 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         let bands = spectrum.map(|spectrum| of_bands(spectrum).into_iter().map(|x| x as f32).collect());
         let color = |part: Lanes<N>| received.times(part, &world.responses).map(|x| x * factor);
         let stokes = polarized.stokes.map(|stokes| Arc::new(stokes.map(color)));
-        let Photon { light, early, .. } = *self.photon_hit.photon;
+        let Photon { light, first_half, .. } = *self.photon_hit.photon;
         let changed = || received.times(Lanes::ONE + polarized.change, &world.responses).map(|x| x * factor);
-        let change = if polarized.change.is_zero() { 0.0 } else { world.share_of_change(rgb, changed()) as f32 };
-        let (bounces, caught) = (self.photon_hit.path.surfaces(), self.seen_through == SeenThrough::Holes);
-        Splat { change, rgb, stokes, bands, weight: 1.0, light, bounces, dispersed, early, caught, first }
+        let change = if polarized.change.is_zero() { 0.0 } else { world.relative_change(rgb, changed()) as f32 };
+        let (bounces, on_catcher) = (self.photon_hit.path.surfaces(), self.seen_through == SeenThrough::Holes);
+        Splat { change, rgb, stokes, bands, weight: 1.0, light, bounces, dispersed, first_half, on_catcher, first }
     }
 
     /// Keeps a splat at each place where it reaches a pixel.

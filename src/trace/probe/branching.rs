@@ -18,47 +18,47 @@ pub enum Branching {
 /// Pixels along each side of the image that are tested.
 const SIDE: u32 = 16;
 /// Most objects that are tested one by one.
-const OBJECTS: usize = 64;
+const MAX_OBJECTS: usize = 64;
 
 /// Follows all branches in pixels spread over the image, and in pixels where the camera would see transmissive objects
-/// if nothing were in front of them. Stops as soon as it is known whether a mean sample hits more than `most` surfaces.
+/// if nothing were in front of them. Stops as soon as it is known whether a mean sample hits more than `max` surfaces.
 /// A sample that had to continue by chance exceeds the limit, whatever the mean is.
-pub fn branching(world: &World, most: f64) -> Branching {
-    in_lanes!(&world.method.basis, N => ask::<N>(world, most))
+pub fn branching(world: &World, max: f64) -> Branching {
+    in_lanes!(&world.method.basis, N => trace_branches::<N>(world, max))
 }
 
-fn ask<const N: usize>(world: &World, most: f64) -> Branching {
+fn trace_branches<const N: usize>(world: &World, max: f64) -> Branching {
     let mut tracer = PathTracer::<N>::new(world);
     let film = world.scene.film.whole();
-    let mut ask = |[x, y]: [i32; 2]| {
+    let mut trace_branches = |[x, y]: [i32; 2]| {
         let before = tracer.walker.stats.rays;
         tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
         (tracer.walker.stats.rays - before, tracer.walker.stats.by_chance > 0)
     };
-    let enough = most * f64::from(SIDE * SIDE);
-    let mut met = 0;
+    let max_total = max * f64::from(SIDE * SIDE);
+    let mut surfaces = 0;
     for pixel in film.middles_of_cells(SIDE) {
-        let (more, by_chance) = ask(pixel);
-        met += more;
-        if by_chance || met as f64 > enough {
+        let (more, by_chance) = trace_branches(pixel);
+        surfaces += more;
+        if by_chance || surfaces as f64 > max_total {
             return Branching::Beyond(pixel);
         }
     }
-    match pixels_of_objects(world, Lobes::is_transmissive).into_iter().find(|&pixel| ask(pixel).1) {
+    match pixels_of_objects(world, Lobes::is_transmissive).into_iter().find(|&pixel| trace_branches(pixel).1) {
         Some(pixel) => Branching::Beyond(pixel),
-        None => Branching::Affordable(met as f64 / f64::from(SIDE * SIDE)),
+        None => Branching::Affordable(surfaces as f64 / f64::from(SIDE * SIDE)),
     }
 }
 
 /// Returns the pixels in which the camera would see objects of some materials if nothing hid them: at the center of
 /// their bounds and toward their corners.
-pub fn pixels_of_objects(world: &World, counts: impl Fn(Lobes) -> bool) -> Vec<[i32; 2]> {
+pub fn pixels_of_objects(world: &World, is_match: impl Fn(Lobes) -> bool) -> Vec<[i32; 2]> {
     let scene = &world.scene;
-    let wanted = |object: &u32| counts(scene.material_of(*object).lobes());
-    let several: Vec<u32> = (0..scene.objects.len() as u32).filter(wanted).collect();
-    let stride = several.len().div_ceil(OBJECTS).max(1);
+    let is_wanted = |object: &u32| is_match(scene.material_of(*object).lobes());
+    let matching: Vec<u32> = (0..scene.objects.len() as u32).filter(is_wanted).collect();
+    let stride = matching.len().div_ceil(MAX_OBJECTS).max(1);
     let mut pixels = Vec::new();
-    for &object in several.iter().step_by(stride) {
+    for &object in matching.iter().step_by(stride) {
         let Some(bounds) = scene.objects[object as usize].shape.bounds() else { continue };
         let (middle, half) = (bounds.center(), 0.5 * bounds.size());
         let sign = |corner: u32, axis: u32| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };

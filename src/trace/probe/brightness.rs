@@ -1,26 +1,26 @@
 //! Learns from a few camera samples what lights a room.
 
 use super::clusters::{Cluster, Rectangle, clusters};
-use super::findings::found_all_over;
+use super::findings::collect_events;
 use super::openings::Openings;
 use super::room::{Room, weight};
 use crate::math::{DVec3, Ray};
 use crate::shape::{Quad, Shape};
-use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
+use crate::trace::bright::{BrightPlace, BrightPlaces, MAX_PLACES};
 use crate::trace::camera::{Bounce, SensorEvent};
-use crate::trace::photon::few_vertices;
+use crate::trace::photon::pilot_vertices;
 use crate::trace::width::in_lanes;
 use crate::trace::{Transport, World};
 
 /// Camera samples along each side of the image: a few to detect a room, and more to learn what lights it.
-const FEW: u32 = 24;
+const DETECTION_SIDE: u32 = 24;
 const SIDE: u32 = 48;
 /// Share of the way to a place that a bounce must travel to have reached what is there.
-const NEARLY: f64 = 0.9;
+const MIN_REACH: f64 = 0.9;
 /// Number of equally bright bounces that tell what lights a room. With fewer, or with nearly all light in as few, more
-/// rays search for openings, in at most `MOST_PIECES` pieces of work.
-const OFTEN: f64 = 32.0;
-const MOST_PIECES: usize = 64;
+/// rays search for openings, in at most `MAX_PIECES` pieces of work.
+const MIN_LIT_BOUNCES: f64 = 32.0;
+const MAX_PIECES: usize = 64;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6272_6967;
 
@@ -43,38 +43,38 @@ pub fn room_light(world: &World) -> RoomLight {
     if world.scene.infinite_lights.is_empty() || !is_random || world.method.diffuse_bounces == 0 {
         return RoomLight::default();
     }
-    of_room(world).unwrap_or_default()
+    learn_room_light(world).unwrap_or_default()
 }
 
-fn of_room(world: &World) -> Option<RoomLight> {
+fn learn_room_light(world: &World) -> Option<RoomLight> {
     // A few samples tell whether there is a room at all.
-    Room::of(world, bounces(world, FEW), SEED)?;
+    Room::of(world, bounces(world, DETECTION_SIDE), SEED)?;
     let room = Room::of(world, bounces(world, SIDE), SEED)?;
     let is_rare = !is_lit_often(&room);
-    let openings = Openings::of(&room, if is_rare { MOST_PIECES } else { 1 });
+    let openings = Openings::of(&room, if is_rare { MAX_PIECES } else { 1 });
     let openings = openings.and_then(|openings| bright_openings(world, &openings));
-    Some(RoomLight { places: learned(&room), openings, is_rare })
+    Some(RoomLight { places: bright_places(&room), openings, is_rare })
 }
 
 /// Traces `side` x `side` camera samples over the image, or fewer if the rays run out, and returns their bounces.
 pub(super) fn bounces(world: &World, side: u32) -> Vec<Bounce> {
-    let bounce = |finding: SensorEvent| if let SensorEvent::Bounce(bounce) = finding { Some(bounce) } else { None };
+    let bounce = |event: SensorEvent| if let SensorEvent::Bounce(bounce) = event { Some(bounce) } else { None };
     in_lanes!(&world.method.basis, N => {
-        found_all_over(world, side, SEED, few_vertices::<N>(world).as_ref(), bounce)
+        collect_events(world, side, SEED, pilot_vertices::<N>(world).as_ref(), bounce)
     })
 }
 
 /// Whether bounces found light often enough to tell what lights the room.
 fn is_lit_often(room: &Room) -> bool {
     let sum = |power: i32| room.bounces.iter().map(|bounce| bounce.light.powi(power)).sum::<f64>();
-    sum(1).powi(2) > OFTEN * sum(2)
+    sum(1).powi(2) > MIN_LIT_BOUNCES * sum(2)
 }
 
 /// Returns the bright places among those that bounces found.
-fn learned(room: &Room) -> Option<BrightPlaces> {
+fn bright_places(room: &Room) -> Option<BrightPlaces> {
     let lit = room.bounces.iter().filter(|bounce| bounce.light > 0.0);
     let points: Vec<(DVec3, f64)> = lit.map(|bounce| (room.end_of(bounce), bounce.light)).collect();
-    bright_of(room, clusters(points, MOST).iter().map(Cluster::rectangle))
+    select_bright(room, clusters(points, MAX_PLACES).iter().map(Cluster::rectangle))
 }
 
 /// Returns the openings through which most light comes. Bounces from anywhere within the walls are aimed at them.
@@ -85,40 +85,40 @@ fn bright_openings(world: &World, Openings { walls, rectangles }: &Openings) -> 
     let aimed = BrightPlaces { within: *walls, places, elsewhere: 0.0, missed: 0.0, are_openings: true };
     let world = world.with_bright(Some(aimed));
     let room = Room::of(&world, bounces(&world, SIDE), SEED)?;
-    Some(BrightPlaces { within: *walls, are_openings: true, ..bright_of(&room, rectangles.iter().copied())? })
+    Some(BrightPlaces { within: *walls, are_openings: true, ..select_bright(&room, rectangles.iter().copied())? })
 }
 
 /// Keeps those rectangles from or through which more light comes than from elsewhere.
-fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option<BrightPlaces> {
+fn select_bright(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option<BrightPlaces> {
     let mut places: Vec<LearnedPlace> = rectangles.filter_map(LearnedPlace::of).collect();
-    let mut elsewhere = Squares::default();
-    let (mut of_sky, mut missed) = (0.0, 0.0);
+    let mut elsewhere = RmsSums::default();
+    let (mut sky_light, mut missed) = (0.0, 0.0);
     for bounce in &room.bounces {
         let ray = Ray { origin: bounce.from, direction: bounce.direction };
-        let mut any = false;
+        let mut reaches_place = false;
         for place in &mut places {
             let Some(intersection) = place.shape.intersect(&ray, f64::INFINITY) else { continue };
             // A bounce that ends in front of the place counts for it as much as one that goes beyond.
             place.squares.add(bounce);
-            any |= bounce.distance > NEARLY * intersection.t;
+            reaches_place |= bounce.distance > MIN_REACH * intersection.t;
         }
-        if !any {
+        if !reaches_place {
             elsewhere.add(bounce);
         }
         if bounce.distance == f64::INFINITY {
-            of_sky += bounce.light;
-            missed += if any { 0.0 } else { bounce.light };
+            sky_light += bounce.light;
+            missed += if reaches_place { 0.0 } else { bounce.light };
         }
     }
     let mean = room.bounces.iter().map(|bounce| bounce.light).sum::<f64>() / weight(&room.bounces);
-    let elsewhere = elsewhere.root() + mean;
+    let elsewhere = elsewhere.rms() + mean;
     let stands_out = |place: &BrightPlace| place.radiance > elsewhere;
     let places: Vec<BrightPlace> = places.into_iter().filter_map(LearnedPlace::bright).filter(stands_out).collect();
     (!places.is_empty() && elsewhere > 0.0).then_some(BrightPlaces {
         within: room.bounds,
         places,
         elsewhere,
-        missed: if of_sky > 0.0 { missed / of_sky } else { 1.0 },
+        missed: if sky_light > 0.0 { missed / sky_light } else { 1.0 },
         are_openings: false,
     })
 }
@@ -126,40 +126,40 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option
 struct LearnedPlace {
     shape: Shape,
     rectangle: Rectangle,
-    squares: Squares,
+    squares: RmsSums,
 }
 
 impl LearnedPlace {
     fn of(rectangle: Rectangle) -> Option<Self> {
         let Rectangle { center, half: [u, v] } = rectangle;
-        let spans = u.cross(v).length();
-        (spans > 0.0 && spans.is_finite()).then(|| Self {
+        let area = u.cross(v).length();
+        (area > 0.0 && area.is_finite()).then(|| Self {
             shape: Shape::Quad(Quad::new(center, u, v)),
             rectangle,
-            squares: Squares::default(),
+            squares: RmsSums::default(),
         })
     }
 
     fn bright(self) -> Option<BrightPlace> {
         let Self { rectangle: Rectangle { center, half }, squares, .. } = self;
-        Some(BrightPlace { center, half, radiance: squares.root() }).filter(|place| place.radiance > 0.0)
+        Some(BrightPlace { center, half, radiance: squares.rms() }).filter(|place| place.radiance > 0.0)
     }
 }
 
 /// Sums for the root mean square of the radiance, weighted by the throughput.
 #[derive(Clone, Copy, Default)]
-struct Squares {
+struct RmsSums {
     light: f64,
     weight: f64,
 }
 
-impl Squares {
+impl RmsSums {
     fn add(&mut self, bounce: &Bounce) {
         self.light += bounce.light * bounce.light;
         self.weight += bounce.weight * bounce.weight;
     }
 
-    fn root(&self) -> f64 {
+    fn rms(&self) -> f64 {
         if self.weight > 0.0 { (self.light / self.weight).sqrt() } else { 0.0 }
     }
 }

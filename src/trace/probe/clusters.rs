@@ -23,39 +23,39 @@ pub struct Cluster {
 }
 
 /// Share of the weight that is left out at each end of a rectangle's edge.
-const OUTSIDE: f64 = 0.02;
+const EDGE_TRIM: f64 = 0.02;
 /// Share of the weight that may lie beyond each side of a box.
-const BEYOND: f64 = 0.01;
+const BOX_TRIM: f64 = 0.01;
 /// Edge directions of a rectangle that are tried over a right angle.
-const TURNS: u32 = 12;
+const ORIENTATIONS: u32 = 12;
 /// Steps that refine the smallest rectangle, each half as large as the one before.
-const REFINED: u32 = 24;
+const REFINE_STEPS: u32 = 24;
 /// Planes along each axis at which points may be split.
 const CUTS: usize = 7;
 /// Share of the total cost, the sum of weights times areas, that a split must save.
-const WORTH: f64 = 0.05;
+const MIN_SAVING: f64 = 0.05;
 /// Most points that are used.
-const POINTS: usize = 2048;
+const MAX_POINTS: usize = 2048;
 /// Fewest points of a cluster.
-const FEWEST: usize = 8;
+const MIN_POINTS: usize = 8;
 /// Steps of the iteration that finds the direction in which points vary most.
-const STEPS: u32 = 24;
+const POWER_ITERATIONS: u32 = 24;
 
-/// Gathers points into at most `most` rectangles, by repeated splitting in two. Each split minimizes the sum of weights
+/// Gathers points into at most `max` rectangles, by repeated splitting in two. Each split minimizes the sum of weights
 /// times areas. Of very many points, a subset suffices.
-pub fn clusters(points: Vec<(DVec3, f64)>, most: usize) -> Vec<Cluster> {
-    let step = points.len().div_ceil(POINTS).max(1);
+pub fn clusters(points: Vec<(DVec3, f64)>, max: usize) -> Vec<Cluster> {
+    let step = points.len().div_ceil(MAX_POINTS).max(1);
     let points = points.into_iter().step_by(step).collect();
-    let Some(first) = Cluster::around(points) else { return Vec::new() };
+    let Some(first) = Cluster::from_points(points) else { return Vec::new() };
     let mut found = vec![(first.split(), first)];
-    while found.len() < most {
+    while found.len() < max {
         let total: f64 = found.iter().map(|(_, cluster)| cluster.cost).sum();
-        let saves = |split: &Option<[Cluster; 2]>, cluster: &Cluster| {
+        let saving = |split: &Option<[Cluster; 2]>, cluster: &Cluster| {
             split.as_ref().map_or(0.0, |[a, b]| cluster.cost - a.cost - b.cost)
         };
-        let saved: Vec<f64> = found.iter().map(|(split, cluster)| saves(split, cluster)).collect();
-        let best = (0..found.len()).max_by(|&a, &b| saved[a].total_cmp(&saved[b])).unwrap_or(0);
-        if saved[best] <= WORTH * total {
+        let savings: Vec<f64> = found.iter().map(|(split, cluster)| saving(split, cluster)).collect();
+        let best = (0..found.len()).max_by(|&a, &b| savings[a].total_cmp(&savings[b])).unwrap_or(0);
+        if savings[best] <= MIN_SAVING * total {
             break;
         }
         if let (Some(parts), _) = found.swap_remove(best) {
@@ -67,7 +67,7 @@ pub fn clusters(points: Vec<(DVec3, f64)>, most: usize) -> Vec<Cluster> {
 
 impl Rectangle {
     /// Scales its length and width by a factor.
-    pub fn times(self, factor: f64) -> Self {
+    pub fn scaled(self, factor: f64) -> Self {
         Self { half: self.half.map(|half| half * factor), ..self }
     }
 
@@ -85,54 +85,54 @@ impl Cluster {
     }
 
     /// Returns the smallest rectangle around all of the points, seen along the cluster's thickness.
-    pub fn around_all(&self) -> Rectangle {
+    pub fn bounding_rectangle(&self) -> Rectangle {
         let [u, v, normal] = self.half.map(DVec3::normalize_or_zero);
         let normal = if normal == DVec3::ZERO { u.cross(v) } else { normal };
         let along = normal * self.center.dot(normal);
-        let turned = |angle: f64| {
+        let rectangle_at = |angle: f64| {
             let (sin, cos) = libm::sincos(angle);
             let axes = [u * cos + v * sin, v * cos - u * sin];
-            let spans = axes.map(|axis| self.span_of_all(axis));
+            let spans = axes.map(|axis| self.full_span(axis));
             let middle = |i: usize| axes[i] * (0.5 * (spans[i][0] + spans[i][1]));
             let half = |i: usize| axes[i] * (0.5 * (spans[i][1] - spans[i][0]));
             Rectangle { center: along + middle(0) + middle(1), half: [half(0), half(1)] }
         };
-        let (mut angle, mut least) = (0.0, turned(0.0));
-        let mut step = FRAC_PI_2 / f64::from(TURNS);
-        for _ in 0..REFINED {
+        let (mut angle, mut smallest) = (0.0, rectangle_at(0.0));
+        let mut step = FRAC_PI_2 / f64::from(ORIENTATIONS);
+        for _ in 0..REFINE_STEPS {
             for next in [angle - step, angle + step] {
-                let other = turned(next);
-                if other.area() < least.area() {
-                    (angle, least) = (next, other);
+                let other = rectangle_at(next);
+                if other.area() < smallest.area() {
+                    (angle, smallest) = (next, other);
                 }
             }
             step *= 0.5;
         }
-        least
+        smallest
     }
 
-    fn span_of_all(&self, axis: DVec3) -> [f64; 2] {
+    fn full_span(&self, axis: DVec3) -> [f64; 2] {
         let along = self.points.iter().map(|point| point.0.dot(axis));
         along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
     }
 
     /// Returns the cluster of the points of both.
-    pub fn joined(&self, other: &Self) -> Option<Self> {
-        Self::around([self.points.as_slice(), &other.points].concat())
+    pub fn merged(&self, other: &Self) -> Option<Self> {
+        Self::from_points([self.points.as_slice(), &other.points].concat())
     }
 
-    fn around(points: Vec<(DVec3, f64)>) -> Option<Self> {
+    fn from_points(points: Vec<(DVec3, f64)>) -> Option<Self> {
         let weight: f64 = points.iter().map(|point| point.1).sum();
-        if points.len() < FEWEST || weight <= 0.0 {
+        if points.len() < MIN_POINTS || weight <= 0.0 {
             return None;
         }
         let normal = normal_of(&points, weight);
         let frame = Frame::about(normal);
         let mut best: Option<(f64, DVec3, [DVec3; 3])> = None;
-        for turn in 0..TURNS {
-            let (sin, cos) = libm::sincos(FRAC_PI_2 * f64::from(turn) / f64::from(TURNS));
+        for turn in 0..ORIENTATIONS {
+            let (sin, cos) = libm::sincos(FRAC_PI_2 * f64::from(turn) / f64::from(ORIENTATIONS));
             let axes = [DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0), DVec3::Z].map(|x| frame.to_world(x));
-            let spans = axes.map(|axis| span(&points, weight, axis, OUTSIDE));
+            let spans = axes.map(|axis| span(&points, weight, axis, EDGE_TRIM));
             let [x, y, z] = spans.map(|[low, high]| high - low);
             let area = (x + z) * (y + z);
             if best.as_ref().is_none_or(|best| area < best.0) {
@@ -158,15 +158,15 @@ impl Cluster {
                     .iter()
                     .for_each(|point| sides[usize::from(point.0.dot(axis) > level)].add(point.0, point.1));
                 let cost = sides[0].cost() + sides[1].cost();
-                let enough = sides.iter().all(|side| side.count >= FEWEST);
-                if enough && best.is_none_or(|best| cost < best.0) {
+                let are_populated = sides.iter().all(|side| side.count >= MIN_POINTS);
+                if are_populated && best.is_none_or(|best| cost < best.0) {
                     best = Some((cost, axis, level));
                 }
             }
         }
         let (_, axis, level) = best?;
         let (above, below) = self.points.iter().partition(|point| point.0.dot(axis) > level);
-        Some([Self::around(above)?, Self::around(below)?])
+        Some([Self::from_points(above)?, Self::from_points(below)?])
     }
 }
 
@@ -205,8 +205,8 @@ impl PointSpread {
         }
         let mean = self.sum / self.weight;
         let squares = self.squares / self.weight - mean * mean;
-        let crossed = DVec3::new(mean.y * mean.z, mean.z * mean.x, mean.x * mean.y);
-        let products = self.products / self.weight - crossed;
+        let mean_products = DVec3::new(mean.y * mean.z, mean.z * mean.x, mean.x * mean.y);
+        let products = self.products / self.weight - mean_products;
         let DVec3 { x, y, z } = squares;
         self.weight * (x * y + y * z + z * x - products.length_squared()).max(0.0).sqrt()
     }
@@ -217,19 +217,19 @@ impl PointSpread {
 /// so that a narrow slit has its own plane.
 fn normal_of(points: &[(DVec3, f64)], weight: f64) -> DVec3 {
     let middle = points.iter().fold(DVec3::ZERO, |sum, (point, share)| sum + *point * (share / weight));
-    let times = |x: DVec3| {
+    let covariance_times = |x: DVec3| {
         points.iter().fold(DVec3::ZERO, |sum, (point, share)| {
-            let way = *point - middle;
-            sum + way * (way.dot(x) * share / weight)
+            let offset = *point - middle;
+            sum + offset * (offset.dot(x) * share / weight)
         })
     };
-    let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(times);
+    let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(covariance_times);
     let step = |x: DVec3| columns[0] * x.x + columns[1] * x.y + columns[2] * x.z;
-    let mut longest = DVec3::new(0.36, 0.48, 0.8);
-    for _ in 0..STEPS {
-        longest = step(step(longest)).try_normalize().unwrap_or(longest);
+    let mut major_axis = DVec3::new(0.36, 0.48, 0.8);
+    for _ in 0..POWER_ITERATIONS {
+        major_axis = step(step(major_axis)).try_normalize().unwrap_or(major_axis);
     }
-    let frame = Frame::about(longest);
+    let frame = Frame::about(major_axis);
     let [a, b] = [DVec3::X, DVec3::Y].map(|axis| frame.to_world(axis));
     let angle = 0.5 * libm::atan2(2.0 * a.dot(step(b)), a.dot(step(a)) - b.dot(step(b)));
     let (sin, cos) = libm::sincos(angle);
@@ -237,22 +237,22 @@ fn normal_of(points: &[(DVec3, f64)], weight: f64) -> DVec3 {
 }
 
 /// Returns a box around weighted points, except for a few beyond each of its sides.
-pub fn bounds_of_most(points: &[(DVec3, f64)], weight: f64) -> Bounds {
-    let [x, y, z] = DVec3::AXES.map(|axis| span(points, weight, axis, BEYOND));
+pub fn trimmed_bounds(points: &[(DVec3, f64)], weight: f64) -> Bounds {
+    let [x, y, z] = DVec3::AXES.map(|axis| span(points, weight, axis, BOX_TRIM));
     Bounds { min: DVec3::new(x[0], y[0], z[0]), max: DVec3::new(x[1], y[1], z[1]) }
 }
 
 /// Returns the interval that weighted points span along an axis, without the given share of the weight at each end.
-fn span(points: &[(DVec3, f64)], weight: f64, axis: DVec3, outside: f64) -> [f64; 2] {
+fn span(points: &[(DVec3, f64)], weight: f64, axis: DVec3, trim: f64) -> [f64; 2] {
     let mut along: Vec<(f64, f64)> = points.iter().map(|(point, share)| (point.dot(axis), *share)).collect();
     along.sort_by(|a, b| a.0.total_cmp(&b.0));
-    [reach(along.iter(), outside * weight), reach(along.iter().rev(), outside * weight)]
+    [trimmed_end(along.iter(), trim * weight), trimmed_end(along.iter().rev(), trim * weight)]
 }
 
-fn reach<'a>(mut along: impl Iterator<Item = &'a (f64, f64)>, mut left: f64) -> f64 {
+fn trimmed_end<'a>(mut along: impl Iterator<Item = &'a (f64, f64)>, mut weight_left: f64) -> f64 {
     let beyond = along.find(|point| {
-        left -= point.1;
-        left < 0.0
+        weight_left -= point.1;
+        weight_left < 0.0
     });
     beyond.map_or(0.0, |point| point.0)
 }

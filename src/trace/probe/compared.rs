@@ -1,6 +1,6 @@
 //! Measures what polarization changes, with a few hundred camera samples and a few thousand photons.
 
-use super::seen_light::{Amount, SIDE, for_each_light, with_fewer_photons};
+use super::seen_light::{SIDE, SeenLight, for_each_light, with_fewer_photons};
 use crate::film::Window;
 use crate::trace::World;
 use crate::trace::method::Polarizing;
@@ -15,15 +15,15 @@ use crate::trace::width::in_lanes_of;
 pub fn polarization_error(world: &World) -> f64 {
     let world = with_fewer_photons(world).with_polarization(Polarizing::Compared);
     let mut grids = SIDES.map(|side| Cells::new(world.scene.film.window(), side));
-    let mut all = Amount::default();
-    let mut take = |pixel, copy, found| {
+    let mut all = SeenLight::default();
+    let mut record = |pixel, copy, found| {
         grids.iter_mut().for_each(|cells| cells.add(pixel, copy, found));
         all += found;
     };
-    in_lanes_of!(&world, N, P => for_each_light::<N, P>(&world, 2, &mut take));
-    let lit = all.light + all.change;
-    let of_all = if lit > 0.0 { all.change.abs() / lit } else { 0.0 };
-    grids.iter().map(Cells::error).fold(of_all, f64::max)
+    in_lanes_of!(&world, N, P => for_each_light::<N, P>(&world, 2, &mut record));
+    let total = all.light + all.change;
+    let overall_error = if total > 0.0 { all.change.abs() / total } else { 0.0 };
+    grids.iter().map(Cells::error).fold(overall_error, f64::max)
 }
 
 /// Cells along each side of the image: of one sample each, and so large that thin beams send photons to both copies.
@@ -33,15 +33,15 @@ const SIDES: [u32; 2] = [SIDE, SIDE / 4];
 struct Cells {
     window: Window,
     side: u32,
-    cells: Vec<[Amount; 2]>,
+    cells: Vec<[SeenLight; 2]>,
 }
 
 impl Cells {
     fn new(window: Window, side: u32) -> Self {
-        Self { window, side, cells: vec![[Amount::default(); 2]; (side * side) as usize] }
+        Self { window, side, cells: vec![[SeenLight::default(); 2]; (side * side) as usize] }
     }
 
-    fn add(&mut self, pixel: [u32; 2], copy: usize, found: Amount) {
+    fn add(&mut self, pixel: [u32; 2], copy: usize, found: SeenLight) {
         self.cells[self.window.cell_of(self.side, pixel)][copy] += found;
     }
 
@@ -55,7 +55,7 @@ impl Cells {
         }
         // An image with fewer pixels than cells leaves some cells empty.
         let count = f64::from(self.window.width.min(self.side) * self.window.height.min(self.side));
-        let chance = f64::sqrt((spread - errors * errors / count).max(0.0));
-        if squares > 0.0 { f64::sqrt((f64::max(errors, 0.0) + chance) / squares) } else { 0.0 }
+        let standard_error = f64::sqrt((spread - errors * errors / count).max(0.0));
+        if squares > 0.0 { f64::sqrt((f64::max(errors, 0.0) + standard_error) / squares) } else { 0.0 }
     }
 }

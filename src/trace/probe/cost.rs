@@ -7,9 +7,11 @@ use std::time::{Duration, Instant};
 use crate::math::{Sampler, median};
 use crate::trace::camera::PathTracer;
 use crate::trace::image::PhotonCost;
-use crate::trace::parallel::{alone, in_parallel};
+use crate::trace::parallel::{in_parallel, on_one_thread};
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send, splat_photon, store_photon};
+use crate::trace::photon::{
+    Batch, LightPaths, PhotonMap, SAMPLES_PER_SET, photons, splat_photon, store_photon, trace_batch,
+};
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
@@ -42,28 +44,28 @@ impl PhotonTimes {
     /// Returns how many camera samples a photon counts as, if a sample takes the given time.
     pub fn in_samples(&self, sample: Duration) -> PhotonCost {
         let sample = sample.max(Duration::from_nanos(1)).as_secs_f64();
-        let of = |photon: Duration| (photon.as_secs_f64() / sample).round().clamp(1.0, MOST_COST) as u64;
-        PhotonCost { splatted: of(self.splatted), stored: of(self.stored) }
+        let cost = |photon: Duration| (photon.as_secs_f64() / sample).round().clamp(1.0, MAX_COST) as u64;
+        PhotonCost { splatted: cost(self.splatted), stored: cost(self.stored) }
     }
 }
 
 /// A larger ratio means that the sample was not measured well.
-const MOST_COST: f64 = 100.0;
+const MAX_COST: f64 = 100.0;
 /// Camera samples along each side of the image.
 const SIDE: u32 = 48;
 /// Samples that are timed together.
-const BATCH: u32 = 16;
+const BATCH_SIZE: u32 = 16;
 /// A batch is timed again if its rays take this many times the median.
-const SLOW: f64 = 2.0;
+const SLOW_RATIO: f64 = 2.0;
 /// Photons that are timed together, and the most batches of them.
-const FEW: u64 = 64;
-const TIMES: u64 = 64;
+const PHOTON_BATCH: u64 = 64;
+const MAX_BATCHES: u64 = 64;
 /// Most photons of the map from which samples gather.
-const GATHERED: u64 = 4096;
+const MAX_STORED: u64 = 4096;
 /// Time after which no more camera samples are traced.
-const ENOUGH: Duration = Duration::from_millis(300);
+const MAX_SAMPLE_TIME: Duration = Duration::from_millis(300);
 /// Time after which no more photons are traced; they vary less.
-const ENOUGH_PHOTONS: Duration = Duration::from_millis(100);
+const MAX_PHOTON_TIME: Duration = Duration::from_millis(100);
 
 /// Traces single samples of pixels spread over the part of the image that is rendered.
 pub fn probe(world: &World) -> Probe {
@@ -71,128 +73,131 @@ pub fn probe(world: &World) -> Probe {
 }
 
 fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
-    let places: Vec<_> = world.scene.film.window().middles_of_cells(SIDE).collect();
+    let pixels: Vec<_> = world.scene.film.window().middles_of_cells(SIDE).collect();
     // Tables that are computed on first use must not count toward the time of a sample.
-    let rough = |id: u32| world.scene.material_of(id).roughness().is_some_and(|roughness| roughness.value() > 0.0);
-    if (0..world.scene.objects.len()).any(|object| rough(object as u32)) {
+    let is_rough = |id: u32| world.scene.material_of(id).roughness().is_some_and(|roughness| roughness.value() > 0.0);
+    if (0..world.scene.objects.len()).any(|object| is_rough(object as u32)) {
         let mut tracer = PathTracer::<N, P>::new(world);
-        for &[x, y] in &places[..SIDE as usize] {
+        for &[x, y] in &pixels[..SIDE as usize] {
             tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
         }
     }
     let light_paths = LightPaths::new(world, world.method.seed);
     let before_vertices = Instant::now();
-    let vertices = light_paths.map(|light_paths| alone(|| light_paths.shared::<N, P>(0..SHARED)));
+    let vertices =
+        light_paths.map(|light_paths| on_one_thread(|| light_paths.vertices_for::<N, P>(0..SAMPLES_PER_SET)));
     let light_paths =
-        vertices.as_ref().map_or(Duration::ZERO, |_| before_vertices.elapsed().div_f64(f64::from(SHARED)));
-    let (few, photons) = few_photons::<N, P>(world);
+        vertices.as_ref().map_or(Duration::ZERO, |_| before_vertices.elapsed().div_f64(f64::from(SAMPLES_PER_SET)));
+    let (few, photons) = with_few_photons::<N, P>(world);
     let mut tracer = PathTracer::<N, P>::new(&few).with_photons(photons.as_ref());
     tracer.light_vertices = vertices.as_ref();
     let parted = Cell::new(0);
-    let mut take = |numbers: Range<u32>| {
+    let mut time_batch = |numbers: Range<u32>| {
         let (start, before) = (Instant::now(), tracer.walker.stats.rays);
-        for &[x, y] in &places[numbers.start as usize..numbers.end as usize] {
+        for &[x, y] in &pixels[numbers.start as usize..numbers.end as usize] {
             let before = tracer.walker.stats.partings;
             tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
             parted.set(parted.get() + u32::from(tracer.walker.stats.partings > before));
         }
-        Timed { time: start.elapsed(), rays: tracer.walker.stats.rays - before }
+        BatchTime { time: start.elapsed(), rays: tracer.walker.stats.rays - before }
     };
     let (start, mut batches) = (Instant::now(), Vec::new());
-    while batches.len() < (SIDE * SIDE / BATCH) as usize && start.elapsed() < ENOUGH {
-        let first = batches.len() as u32 * BATCH;
-        batches.push(take(first..first + BATCH));
+    while batches.len() < (SIDE * SIDE / BATCH_SIZE) as usize && start.elapsed() < MAX_SAMPLE_TIME {
+        let first = batches.len() as u32 * BATCH_SIZE;
+        batches.push(time_batch(first..first + BATCH_SIZE));
     }
-    let (samples, parted) = (batches.len() as u32 * BATCH, parted.get());
+    let (samples, parted) = (batches.len() as u32 * BATCH_SIZE, parted.get());
     let rays = batches.iter().map(|batch| batch.rays).sum::<u64>() as f64 / f64::from(samples);
-    let time = undisturbed(batches, |number| take(number as u32 * BATCH..(number as u32 + 1) * BATCH));
+    let time =
+        undisturbed_time(batches, |number| time_batch(number as u32 * BATCH_SIZE..(number as u32 + 1) * BATCH_SIZE));
     let per_sample = 1.0 / f64::from(samples);
     Probe { rays, parted: f64::from(parted) * per_sample, time: time.mul_f64(per_sample), light_paths }
 }
 
 /// What a batch took.
 #[derive(Clone, Copy)]
-struct Timed {
+struct BatchTime {
     time: Duration,
     rays: u64,
 }
 
 /// Returns the total time of all batches. Batches whose rays took much longer than the median are timed again: they are
 /// faster if only another process had kept the processor busy.
-fn undisturbed(batches: Vec<Timed>, mut again: impl FnMut(usize) -> Timed) -> Duration {
-    let per_ray = |batch: &Timed| batch.time.as_secs_f64() / batch.rays.max(1) as f64;
-    let slow = median(batches.iter().map(per_ray).collect()).map_or(f64::INFINITY, |median| SLOW * median);
-    let time = |(number, batch): (usize, &Timed)| match per_ray(batch) > slow {
-        true => batch.time.min(again(number).time),
+fn undisturbed_time(batches: Vec<BatchTime>, mut retime: impl FnMut(usize) -> BatchTime) -> Duration {
+    let per_ray = |batch: &BatchTime| batch.time.as_secs_f64() / batch.rays.max(1) as f64;
+    let slow = median(batches.iter().map(per_ray).collect()).map_or(f64::INFINITY, |median| SLOW_RATIO * median);
+    let time = |(number, batch): (usize, &BatchTime)| match per_ray(batch) > slow {
+        true => batch.time.min(retime(number).time),
         false => batch.time,
     };
     batches.iter().enumerate().map(time).sum()
 }
 
 /// Returns a world whose map has few photons, and this map. As many are gathered around a place as from the full map.
-pub fn few_photons<const N: usize, P: Polarization<N>>(world: &World) -> (World, Option<PhotonMap<N, P>>) {
-    let most = photons_within(world, RAYS_OF_A_LOOK as f64).clamp(FEW, GATHERED);
+pub fn with_few_photons<const N: usize, P: Polarization<N>>(world: &World) -> (World, Option<PhotonMap<N, P>>) {
+    let max_photons = photons_within(world, RAYS_OF_A_LOOK as f64).clamp(PHOTON_BATCH, MAX_STORED);
     let fewer = |map: MapPasses| {
-        let photons = map.photons.min(most);
+        let photons = map.photons.min(max_photons);
         MapPasses { photons, radius: map.radius * (map.photons as f64 / photons as f64).sqrt(), ..map }
     };
     let pass = world.method.light_pass.as_ref();
     let world = world.with_light_pass(pass.map(|pass| pass.with_map(fewer)));
-    let photons = photons::<N, P>(&world, &Pass::of_photons_alone(&world, 0));
+    let photons = photons::<N, P>(&world, &Pass::for_photons_only(&world, 0));
     (world, photons)
 }
 
 /// Estimates how many photons can be traced with `rays` rays, from a few of them. In a heap of glass balls, each takes
 /// hundreds of rays.
 pub fn photons_within(world: &World, rays: f64) -> u64 {
-    let [splatted, stored] = of_both(world, &|targets, follow| {
-        let of_photon = |number: usize| {
-            let target = targets.of_photon((2 * number as u64 + 1) * targets.photons() / (2 * FEW));
-            follow(Batch { target, first: number as u64, count: 1, seed: world.method.seed }).rays
+    let [splatted, stored] = for_both_kinds(world, &|targets, run_batch| {
+        let rays_of_photon = |number: usize| {
+            let target = targets.target_of_photon((2 * number as u64 + 1) * targets.photons() / (2 * PHOTON_BATCH));
+            run_batch(Batch { target, first: number as u64, count: 1, seed: world.method.seed }).rays
         };
-        in_parallel(FEW as usize, &of_photon).into_iter().sum::<u64>()
+        in_parallel(PHOTON_BATCH as usize, &rays_of_photon).into_iter().sum::<u64>()
     });
-    (rays * FEW as f64 / splatted.max(stored).max(1) as f64) as u64
+    (rays * PHOTON_BATCH as f64 / splatted.max(stored).max(1) as f64) as u64
 }
 
-type Follow<'a> = &'a (dyn Fn(Batch) -> Stats + Sync);
+type RunBatch<'a> = &'a (dyn Fn(Batch) -> Stats + Sync);
 
 /// Returns what `find` returns for the photons of the light pass and for those of a map, or defaults without them.
-fn of_both<T: Default>(world: &World, find: &dyn Fn(&PhotonTargets, Follow) -> T) -> [T; 2] {
+fn for_both_kinds<T: Default>(world: &World, find: &dyn Fn(&PhotonTargets, RunBatch) -> T) -> [T; 2] {
     in_lanes!(&world.method.basis, N => {
         let film = world.scene.film;
-        let spread = |batch: Batch, to: &PhotonTargets| {
-            let sent = send(world, to, batch, false, &splat_photon::<N, Polarized>);
+        let splat_batch = |batch: Batch, targets: &PhotonTargets| {
+            let sent = trace_batch(world, targets, batch, false, &splat_photon::<N, Polarized>);
             sent.kept.iter().for_each(|placed| placed.spread(film, &mut |_, _| ()));
             sent.stats
         };
-        let splatted = |to: &PhotonTargets| find(to, &|batch| spread(batch, to));
-        let stored = |to: &PhotonTargets| find(to, &|batch| send(world, to, batch, false, &store_photon::<N, Polarized>).stats);
+        let splatted = |targets: &PhotonTargets| find(targets, &|batch| splat_batch(batch, targets));
+        let stored = |targets: &PhotonTargets| find(targets, &|batch| trace_batch(world, targets, batch, false, &store_photon::<N, Polarized>).stats);
         [world.photon_targets.as_ref().map(splatted), world.map_targets.as_ref().map(stored)].map(Option::unwrap_or_default)
     })
 }
 
 /// Times some photons, of targets chosen in proportion to the photons they send.
 pub fn photon_times(world: &World) -> PhotonTimes {
-    let [splatted, stored] = of_both(world, &|targets, follow| photon_time(targets, world.method.seed, follow));
+    let [splatted, stored] =
+        for_both_kinds(world, &|targets, run_batch| photon_time(targets, world.method.seed, run_batch));
     PhotonTimes { splatted, stored }
 }
 
-fn photon_time(targets: &PhotonTargets, seed: u64, follow: Follow) -> Duration {
-    let take = |number: u64| {
+fn photon_time(targets: &PhotonTargets, seed: u64, run_batch: RunBatch) -> Duration {
+    let time_batch = |number: u64| {
         // Visit distant numbers first: where photons take long, time runs out after a few batches.
-        let number = (number * 29) % TIMES;
-        let target = targets.of_photon((2 * number + 1) * targets.photons() / (2 * TIMES));
+        let number = (number * 29) % MAX_BATCHES;
+        let target = targets.target_of_photon((2 * number + 1) * targets.photons() / (2 * MAX_BATCHES));
         let start = Instant::now();
-        let stats = follow(Batch { target, first: number * FEW, count: FEW, seed });
-        Timed { time: start.elapsed(), rays: stats.rays }
+        let stats = run_batch(Batch { target, first: number * PHOTON_BATCH, count: PHOTON_BATCH, seed });
+        BatchTime { time: start.elapsed(), rays: stats.rays }
     };
     let (start, mut batches) = (Instant::now(), Vec::new());
-    while batches.len() < TIMES as usize && start.elapsed() < ENOUGH_PHOTONS {
-        batches.push(take(batches.len() as u64));
+    while batches.len() < MAX_BATCHES as usize && start.elapsed() < MAX_PHOTON_TIME {
+        batches.push(time_batch(batches.len() as u64));
     }
-    let photons = batches.len() as f64 * FEW as f64;
-    undisturbed(batches, |number| take(number as u64)).div_f64(photons)
+    let photons = batches.len() as f64 * PHOTON_BATCH as f64;
+    undisturbed_time(batches, |number| time_batch(number as u64)).div_f64(photons)
 }
 
 #[cfg(test)]

@@ -8,16 +8,16 @@ use crate::trace::photon::LightVertices;
 use crate::trace::{RAYS_OF_A_LOOK, World};
 
 /// Traces `side` x `side` camera samples over the image, or fewer if the ray budget runs out, and collects what
-/// `wanted` keeps of their events. `seed` keeps their random numbers apart from others.
-pub fn found_all_over<const N: usize, T>(
+/// `select` keeps of their events. `seed` keeps their random numbers apart from others.
+pub fn collect_events<const N: usize, T>(
     world: &World,
     side: u32,
     seed: u64,
     vertices: Option<&LightVertices<N>>,
-    wanted: impl Fn(SensorEvent) -> Option<T>,
+    select: impl Fn(SensorEvent) -> Option<T>,
 ) -> Vec<T> {
     let found = RefCell::new(Vec::new());
-    let observer = |finding: SensorEvent| found.borrow_mut().extend(wanted(finding));
+    let observer = |event: SensorEvent| found.borrow_mut().extend(select(event));
     let mut tracer = PathTracer::<N>::new(world).with_observer(&observer);
     tracer.light_vertices = vertices;
     for (place, pixel) in (0..).zip(world.scene.film.whole().middles_of_cells(side)) {

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::pilot::SampleWorth;
-use super::reach::{lie_among, looked_through, reaches_photons};
+use super::reach::{has_photon_among, has_photon_near, mean_photons_examined};
 use crate::math::{DVec3, Sampler};
 use crate::spectrum::apply;
 use crate::trace::camera::{PathTracer, SensorEvent};
@@ -31,7 +31,7 @@ pub struct GatheredWorth {
 
 /// Mean number of photons examined per gathering point in a pass that has enough. Their noise is then small compared
 /// with that of paths that lead there, and examining them takes as long as a few rays.
-const ENOUGH: f64 = 16.0;
+const MAX_EXAMINED: f64 = 16.0;
 /// Maps that are compared.
 const MAPS: u64 = 2;
 /// Pixels along each side of the image that gather from the maps, and samples of each.
@@ -47,7 +47,7 @@ const SEED: u64 = 0x6761_7468;
 /// `None` if no photon lies near places that paths from the camera [reach](super::reached_places), or if photons lie
 /// only among these places and none is gathered.
 pub fn gathered_worth(world: &World, places: &[DVec3]) -> Option<GatheredWorth> {
-    in_lanes!(&world.method.basis, N => gather::<N>(world, places))
+    in_lanes!(&world.method.basis, N => compare_maps::<N>(world, places))
 }
 
 /// Sums of values and of their squares, for each channel.
@@ -79,34 +79,34 @@ struct FirstMap<const N: usize> {
 
 impl<const N: usize> FirstMap<N> {
     fn new(world: &World, reached: &[DVec3]) -> Option<Self> {
-        let photons = photons::<N, Polarized>(world, &Pass::of_photons_alone(world, 0))?;
-        let is_near = reaches_photons(world, reached, &photons);
-        if !is_near && !lie_among(reached, &photons) {
+        let photons = photons::<N, Polarized>(world, &Pass::for_photons_only(world, 0))?;
+        let is_near = has_photon_near(world, reached, &photons);
+        if !is_near && !has_photon_among(reached, &photons) {
             return None;
         }
-        let enough = photons.sent as f64 * (ENOUGH / looked_through(world, reached, &photons));
-        let fewer = |map: MapPasses| MapPasses { photons: map.photons.min(enough.ceil() as u64), ..map };
-        let pass = world.method.light_pass.as_ref().map(|pass| pass.with_map(fewer));
+        let enough = photons.sent as f64 * (MAX_EXAMINED / mean_photons_examined(world, reached, &photons));
+        let limit_map = |map: MapPasses| MapPasses { photons: map.photons.min(enough.ceil() as u64), ..map };
+        let pass = world.method.light_pass.as_ref().map(|pass| pass.with_map(limit_map));
         let is_enough = photons.sent as f64 <= enough;
         Some(Self { enough, is_near, world: world.with_light_pass(pass), photons: is_enough.then_some(photons) })
     }
 }
 
-fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWorth> {
+fn compare_maps<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWorth> {
     let FirstMap { enough, is_near, ref world, photons: mut first } = FirstMap::<N>::new(world, reached)?;
     let film = world.scene.film;
     let to_xyz = film.color_space.to_xyz();
     let mut places: Vec<_> = film.whole().middles_of_cells(SIDE).collect();
-    let mut by_photons = vec![Moments::default(); places.len()];
-    let mut by_samples = by_photons.clone();
-    let (mut all_sent, mut rays, mut of_samples, mut second_moment) = (0, 0, 0, 0.0);
+    let mut photon_moments = vec![Moments::default(); places.len()];
+    let mut sample_moments = photon_moments.clone();
+    let (mut all_sent, mut rays, mut sample_rays, mut second_moment) = (0, 0, 0, 0.0);
     for map in 0..MAPS {
-        let sent = || photons::<N, Polarized>(world, &Pass::of_photons_alone(world, map as u32));
-        let photons = first.take().or_else(sent)?;
+        let make_map = || photons::<N, Polarized>(world, &Pass::for_photons_only(world, map as u32));
+        let photons = first.take().or_else(make_map)?;
         (all_sent, rays) = (all_sent + photons.sent, rays + photons.stats.rays);
         let all_gathered = Cell::new([0.0; 3]);
-        let observer = |finding: SensorEvent| {
-            if let SensorEvent::Light(Contribution { found: FoundBy::Gathered, rgb, .. }) = finding {
+        let observer = |event: SensorEvent| {
+            if let SensorEvent::Light(Contribution { found: FoundBy::Gathered, rgb, .. }) = event {
                 let sum: [f64; 3] = all_gathered.get();
                 all_gathered.set(std::array::from_fn(|i| sum[i] + rgb[i]));
             }
@@ -120,35 +120,36 @@ fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWo
                 let sampler = Sampler::of_pixel((world.method.seed ^ SEED).wrapping_add(u64::from(number)), [x, y], 0);
                 let found = tracer.sample(&sampler, [x, y]).rgb;
                 let gathered = all_gathered.get();
-                let of_sample: [f64; 3] = std::array::from_fn(|i| gathered[i] - so_far[i]);
-                let here = apply(&to_xyz, of_sample);
-                second_moment += here.iter().filter(|x| x.is_finite()).map(|x| x * x).sum::<f64>();
+                let sample_gathered: [f64; 3] = std::array::from_fn(|i| gathered[i] - so_far[i]);
+                let xyz = apply(&to_xyz, sample_gathered);
+                second_moment += xyz.iter().filter(|x| x.is_finite()).map(|x| x * x).sum::<f64>();
                 if map == 0 {
-                    by_samples[place].add(apply(&to_xyz, std::array::from_fn(|i| found[i] - of_sample[i])));
+                    sample_moments[place].add(apply(&to_xyz, std::array::from_fn(|i| found[i] - sample_gathered[i])));
                 }
             }
             let gathered = all_gathered.get();
             let mean = std::array::from_fn(|i| (gathered[i] - before[i]) / f64::from(SAMPLES));
-            by_photons[place].add(apply(&to_xyz, mean));
+            photon_moments[place].add(apply(&to_xyz, mean));
             looked_at += 1;
             if map == 0 && tracer.walker.stats.rays > RAYS_OF_A_LOOK {
                 break;
             }
         }
         places.truncate(looked_at);
-        of_samples += tracer.walker.stats.rays;
+        sample_rays += tracer.walker.stats.rays;
     }
     let pixels = film.whole().pixels() as f64;
     let count = places.len() as f64;
     let mean = |variances: &[f64]| variances.iter().sum::<f64>() / count;
-    let of_maps: Vec<f64> = by_photons[..places.len()].iter().map(|sums| sums.variance(MAPS as f64)).collect();
-    let variances = by_samples[..places.len()].iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
-    let taken = MAPS as f64 * count * f64::from(SAMPLES);
+    let map_variances: Vec<f64> =
+        photon_moments[..places.len()].iter().map(|sums| sums.variance(MAPS as f64)).collect();
+    let variances = sample_moments[..places.len()].iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
+    let sample_count = MAPS as f64 * count * f64::from(SAMPLES);
     (is_near || second_moment > 0.0).then(|| GatheredWorth {
-        variance: mean(&of_maps) * pixels * all_sent as f64 / MAPS as f64,
+        variance: mean(&map_variances) * pixels * all_sent as f64 / MAPS as f64,
         rays: rays as f64 / all_sent as f64,
         enough,
-        second_moment: second_moment / taken * pixels * pixels,
-        samples: SampleWorth::of(variances, pixels, of_samples as f64 / taken),
+        second_moment: second_moment / sample_count * pixels * pixels,
+        samples: SampleWorth::of(variances, pixels, sample_rays as f64 / sample_count),
     })
 }

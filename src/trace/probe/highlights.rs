@@ -117,7 +117,7 @@ fn small_lights(world: &World) -> Vec<SmallLight> {
         let (object, place) = match light {
             Light::Sun(sun) => {
                 let sin = libm::sin(0.5 * sun.angular_diameter.to_radians());
-                (None, Place::Far { direction: sun.middle(), sin })
+                (None, Place::Far { direction: sun.center_direction(), sin })
             }
             Light::Area(area) => (Some(area.object), Place::Near(area.visible_part()?.0)),
             Light::Point(point) => (None, Place::Near(Ball { center: point.position.into(), radius: 0.0 })),

@@ -4,7 +4,7 @@ use super::cost::photons_within;
 use crate::light::LightId;
 use crate::scene::FilmSettings;
 use crate::spectrum::apply;
-use crate::trace::image::splats;
+use crate::trace::image::for_each_splat;
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
 use crate::trace::{RAYS_OF_A_LOOK, Smoothness, World};
@@ -43,8 +43,8 @@ pub struct SampleWorth {
 }
 
 /// Most photons of a group of lights in one image of a pilot, photons of all groups together, and number of images.
-const PHOTONS: u64 = 4096;
-const ALL: u64 = 4 * PHOTONS;
+const MAX_GROUP_PHOTONS: u64 = 4096;
+const MAX_PHOTONS: u64 = 4 * MAX_GROUP_PHOTONS;
 const IMAGES: u64 = 4;
 /// Cells along each side of the format.
 pub(super) const SIDE: u32 = 24;
@@ -56,43 +56,43 @@ const SEED: u64 = 0x7069_6c6f;
 ///
 /// Uses the format, even when a crop or overscan is rendered, so that all parts are rendered the same way.
 pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
-    in_lanes!(&world.method.basis, N => weigh_photons::<N>(world))
+    in_lanes!(&world.method.basis, N => measure_groups::<N>(world))
 }
 
-fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
+fn measure_groups<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
     let mut world = whole.of_the_format();
     let Some(targets) = &whole.photon_targets else { return Vec::new() };
-    let smooth = Smoothness::ALL.into_iter().filter(|&smooth| targets.aim_at(smooth));
+    let smooth = Smoothness::ALL.into_iter().filter(|&smooth| targets.has_smoothness(smooth));
     let lights = whole.photon_light_groups();
     let groups: Vec<_> = smooth.flat_map(|smooth| lights.iter().map(move |lights| (lights.clone(), smooth))).collect();
-    let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);
+    let photons = (MAX_PHOTONS / groups.len().max(1) as u64).min(MAX_GROUP_PHOTONS);
     let affordable = photons_within(&world, RAYS_OF_A_LOOK as f64 / (IMAGES * groups.len().max(1) as u64) as f64);
     let photons = photons.min(affordable);
-    groups.into_iter().filter_map(|(lights, to)| weigh::<N>(whole, &mut world, lights, to, photons)).collect()
+    groups.into_iter().filter_map(|(lights, to)| measure_group::<N>(whole, &mut world, lights, to, photons)).collect()
 }
 
 /// Weighs about `each` photons of some lights to objects of one smoothness. Replaces the targets and seed of `world`.
-fn weigh<const N: usize>(
+fn measure_group<const N: usize>(
     whole: &World,
     world: &mut World,
     lights: Vec<LightId>,
     to: Smoothness,
     each: u64,
 ) -> Option<PhotonWorth> {
-    let mut sending = whole.photon_targets.clone()?.only(&lights, to);
-    let all = sending.photons();
-    for target in &mut sending.targets {
-        target.photons = (target.photons as f64 * each as f64 / all as f64).round().max(1.0) as u64;
+    let mut group_targets = whole.photon_targets.clone()?.only(&lights, to);
+    let total = group_targets.photons();
+    for target in &mut group_targets.targets {
+        target.photons = (target.photons as f64 * each as f64 / total as f64).round().max(1.0) as u64;
     }
-    world.photon_targets = Some(sending);
+    world.photon_targets = Some(group_targets);
     let to_xyz = world.scene.film.color_space.to_xyz();
     let (mut values, mut photons, mut rays) = (Vec::new(), 0, 0);
     for image in 0..IMAGES {
         world.method.seed = (whole.method.seed ^ SEED).wrapping_add(image);
         let mut seen = Vec::new();
-        let shown = splats::<N, Polarized>(world, &mut |pixel, splat| seen.push((pixel, splat.rgb)));
-        (photons, rays) = (photons + shown.photons, rays + shown.stats.rays);
-        values.extend(summed(seen).into_iter().map(|(pixel, rgb)| {
+        let sent = for_each_splat::<N, Polarized>(world, &mut |pixel, splat| seen.push((pixel, splat.rgb)));
+        (photons, rays) = (photons + sent.photons, rays + sent.stats.rays);
+        values.extend(sum_by_pixel(seen).into_iter().map(|(pixel, rgb)| {
             let [x, y, z] = apply(&to_xyz, rgb);
             (pixel, [x, y, z, x + y + z])
         }));
@@ -100,13 +100,13 @@ fn weigh<const N: usize>(
     let images = IMAGES as f64;
     let each = photons as f64 / images;
     let squares = values.iter().map(|&(pixel, light)| (pixel, light.map(|x| x * x))).collect();
-    let (sums, squares) = (summed(values), summed(squares));
-    let of_value = |sum: f64, squares: f64| ((squares - sum * sum / images) / (images - 1.0)).max(0.0) * each;
+    let (sums, squares) = (sum_by_pixel(values), sum_by_pixel(squares));
+    let scaled_variance = |sum: f64, squares: f64| ((squares - sum * sum / images) / (images - 1.0)).max(0.0) * each;
     let film = world.scene.film;
-    let sizes = sizes_of_cells(film);
+    let sizes = cell_sizes(film);
     let (mut brings, mut variance, mut cells) = ([0.0; 3], 0.0, vec![CellStatistics::default(); sizes.len()]);
     for ((pixel, sums), (_, squares)) in sums.iter().zip(&squares) {
-        let variances: [f64; 4] = std::array::from_fn(|i| of_value(sums[i], squares[i]));
+        let variances: [f64; 4] = std::array::from_fn(|i| scaled_variance(sums[i], squares[i]));
         (0..3).for_each(|i| brings[i] += sums[i] / images);
         variance += variances[..3].iter().sum::<f64>();
         let cell = film.whole().cell_of(SIDE, [pixel % film.width, pixel / film.width]);
@@ -117,17 +117,17 @@ fn weigh<const N: usize>(
     brings.iter().any(|&x| x != 0.0).then_some(worth)
 }
 
-fn sizes_of_cells(film: FilmSettings) -> Vec<f64> {
-    let of_side = |size: u32| {
+fn cell_sizes(film: FilmSettings) -> Vec<f64> {
+    let cell_lengths = |size: u32| {
         // The first pixel of a cell, defined even where a cell has none.
         let first = move |cell: u32| (u64::from(cell) * u64::from(size)).div_ceil(u64::from(SIDE));
         (0..SIDE).map(move |cell| (first(cell + 1) - first(cell)) as f64)
     };
-    of_side(film.height).flat_map(|rows| of_side(film.width).map(move |columns| rows * columns)).collect()
+    cell_lengths(film.height).flat_map(|rows| cell_lengths(film.width).map(move |columns| rows * columns)).collect()
 }
 
 /// Sums the values of each pixel that has any. The result is never longer than the list of values.
-fn summed<const COUNT: usize>(mut values: Vec<(u32, [f64; COUNT])>) -> Vec<(u32, [f64; COUNT])> {
+fn sum_by_pixel<const COUNT: usize>(mut values: Vec<(u32, [f64; COUNT])>) -> Vec<(u32, [f64; COUNT])> {
     values.sort_by_key(|value| value.0);
     values.dedup_by(|next, sum| {
         let same = next.0 == sum.0;
@@ -151,9 +151,9 @@ impl SampleWorth {
     /// Combines the variances of single samples, summed over channels, in some of an image's pixels.
     pub fn of(mut variances: Vec<f64>, pixels: f64, rays: f64) -> Self {
         variances.sort_by(f64::total_cmp);
-        let common = variances.len() - variances.len().div_ceil(100);
+        let kept = variances.len() - variances.len().div_ceil(100);
         // Of n samples, each pixel has n / pixels.
-        let variance = variances[..common].iter().sum::<f64>() / variances.len() as f64 * pixels * pixels;
+        let variance = variances[..kept].iter().sum::<f64>() / variances.len() as f64 * pixels * pixels;
         Self { variance, rays }
     }
 }
@@ -163,7 +163,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_value_that_is_alone_is_its_mean_and_tells_no_variance() {
+    fn a_single_value_is_its_own_mean_and_has_no_variance() {
         let of = |values: &[f64]| mean_and_variance(values.iter().copied());
         assert_eq!([of(&[]), of(&[3.0]), of(&[3.0, 5.0])], [[0.0, 0.0], [3.0, 0.0], [4.0, 2.0]]);
     }

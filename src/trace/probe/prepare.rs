@@ -1,6 +1,6 @@
 //! Prepares a world for rendering: tabulates it, and lets a few paths and photons learn where to look.
 
-use super::sent_ahead::learn_where_to_send;
+use super::sent_ahead::guide_photons;
 use super::visible_caps::learn_visible_caps;
 use crate::scene::Scene;
 use crate::spectrum::Curve;
@@ -9,7 +9,7 @@ use crate::trace::{Method, World};
 /// Tabulates the scene for the method, then traces rays and photons that learn where lamps and caustics are visible.
 pub fn prepare(scene: &Scene<Curve>, method: Method) -> World {
     let mut world = prepare_unguided(scene, method);
-    learn_where_to_send(&mut world);
+    guide_photons(&mut world);
     world
 }
 

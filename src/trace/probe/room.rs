@@ -1,19 +1,19 @@
 //! A room, as known from the bounces that begin inside it.
 
-use super::clusters::bounds_of_most;
-use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler, cosine_about};
+use super::clusters::trimmed_bounds;
+use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler, sample_cosine_about};
 use crate::shape::SurfacePoint;
 use crate::trace::World;
 use crate::trace::camera::Bounce;
 
 /// Rays that look for the sky from a place, and how many may see it from inside a room: a quarter.
 const LOOKS: u32 = 4;
-const INSIDE: usize = 1;
+const MAX_SKY_LOOKS: usize = 1;
 /// Share of the bounces' weight inside rooms above which the image shows a room.
-const ENOUGH: f64 = 0.25;
+const MIN_INSIDE_SHARE: f64 = 0.25;
 /// Margin around a box, relative to its size; and the multiple of the way to its side beyond which a ray has left it.
 const MARGIN: f64 = 1e-6;
-const BEYOND: f64 = 1.0 + 1e-6;
+const EXIT_FACTOR: f64 = 1.0 + 1e-6;
 
 /// A room in which bounces begin.
 pub struct Room<'a> {
@@ -33,7 +33,7 @@ impl<'a> Room<'a> {
         let inside: Vec<bool> = (0..).zip(&bounces).map(is_inside).collect();
         let bounces: Vec<Bounce> =
             bounces.into_iter().zip(inside).filter_map(|(bounce, inside)| inside.then_some(bounce)).collect();
-        if bounces.is_empty() || weight(&bounces) < ENOUGH * all {
+        if bounces.is_empty() || weight(&bounces) < MIN_INSIDE_SHARE * all {
             return None;
         }
         let from: Vec<(DVec3, f64)> = bounces.iter().map(|bounce| (bounce.from, bounce.weight)).collect();
@@ -44,24 +44,25 @@ impl<'a> Room<'a> {
 
     /// Returns where a bounce ends, or where it leaves the box if that is nearer.
     pub fn end_of(&self, bounce: &Bounce) -> DVec3 {
-        let leaves = distance_out(&self.bounds, bounce.from, bounce.direction);
-        bounce.from + bounce.direction * bounce.distance.min(leaves)
+        let exit = exit_distance(&self.bounds, bounce.from, bounce.direction);
+        bounce.from + bounce.direction * bounce.distance.min(exit)
     }
 
     /// Returns where a ray from the start of a bounce ends, if that is inside.
     pub fn end_inside(&self, bounce: &Bounce, direction: DVec3, sampler: &Sampler) -> Option<DVec3> {
-        let met = WallHit::of(self.world, &leaving(bounce, direction))?;
-        is_inside(self.world, met.position, met.normal, sampler).then_some(met.position)
+        let wall = WallHit::of(self.world, &ray_from(bounce, direction))?;
+        is_inside(self.world, wall.position, wall.normal, sampler).then_some(wall.position)
     }
 
     /// Returns where a ray from the start of a bounce leaves a box around the room, if it reaches the sky or a place
     /// beyond the box that is not inside.
     pub fn way_out(&self, walls: &Bounds, bounce: &Bounce, direction: DVec3, sampler: &Sampler) -> Option<DVec3> {
-        let ray = leaving(bounce, direction);
-        let leaves = distance_out(walls, ray.origin, direction);
-        let is_out = WallHit::of(self.world, &ray)
-            .is_none_or(|met| met.t > BEYOND * leaves && !is_inside(self.world, met.position, met.normal, sampler));
-        is_out.then(|| ray.at(leaves))
+        let ray = ray_from(bounce, direction);
+        let exit = exit_distance(walls, ray.origin, direction);
+        let is_out = WallHit::of(self.world, &ray).is_none_or(|wall| {
+            wall.t > EXIT_FACTOR * exit && !is_inside(self.world, wall.position, wall.normal, sampler)
+        });
+        is_out.then(|| ray.at(exit))
     }
 }
 
@@ -85,13 +86,13 @@ impl WallHit {
 
 /// Returns a box around most of some weighted points, with a small margin.
 pub fn box_around(points: &[(DVec3, f64)], weight: f64) -> Bounds {
-    let most = bounds_of_most(points, weight);
-    let margin = MARGIN * most.size().length();
-    Bounds { min: most.min - margin, max: most.max + margin }
+    let trimmed = trimmed_bounds(points, weight);
+    let margin = MARGIN * trimmed.size().length();
+    Bounds { min: trimmed.min - margin, max: trimmed.max + margin }
 }
 
 /// Returns the distance from a point in a box to its boundary.
-fn distance_out(Bounds { min, max }: &Bounds, from: DVec3, direction: DVec3) -> f64 {
+fn exit_distance(Bounds { min, max }: &Bounds, from: DVec3, direction: DVec3) -> f64 {
     let toward = |i: usize| match direction[i] {
         d if d > 0.0 => (max[i] - from[i]) / d,
         d if d < 0.0 => (min[i] - from[i]) / d,
@@ -100,8 +101,8 @@ fn distance_out(Bounds { min, max }: &Bounds, from: DVec3, direction: DVec3) -> 
     (0..3).map(toward).fold(f64::INFINITY, f64::min)
 }
 
-fn leaving(bounce: &Bounce, direction: DVec3) -> Ray {
-    Ray { origin: off(bounce.from, bounce.normal), direction }
+fn ray_from(bounce: &Bounce, direction: DVec3) -> Ray {
+    Ray { origin: offset_point(bounce.from, bounce.normal), direction }
 }
 
 pub fn weight(bounces: &[Bounce]) -> f64 {
@@ -110,16 +111,16 @@ pub fn weight(bounces: &[Bounce]) -> f64 {
 
 /// Whether at most a quarter of the sky, weighted by the cosine, is seen from a place.
 fn is_inside(world: &World, place: DVec3, normal: DVec3, sampler: &Sampler) -> bool {
-    let origin = off(place, normal);
-    let sees = |look: &u32| {
-        let [u, v, ..] = sampler.four_plain(BranchKey::CAMERA, *look);
-        let ray = Ray { origin, direction: cosine_about(normal, [u, v]) };
+    let origin = offset_point(place, normal);
+    let sees_sky = |look: &u32| {
+        let [u, v, ..] = sampler.get_random_4d(BranchKey::CAMERA, *look);
+        let ray = Ray { origin, direction: sample_cosine_about(normal, [u, v]) };
         world.scene.nearest(&ray, f64::INFINITY, &|object| !world.is_see_through(object)).is_none()
     };
-    (0..LOOKS).filter(sees).count() <= INSIDE
+    (0..LOOKS).filter(sees_sky).count() <= MAX_SKY_LOOKS
 }
 
 /// Returns a point slightly off a surface: good enough for rays that only look around.
-fn off(place: DVec3, normal: DVec3) -> DVec3 {
+fn offset_point(place: DVec3, normal: DVec3) -> DVec3 {
     place + normal * (1e-6 * place.length().max(1e-3))
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::trace::parallel::in_parallel;
-use crate::trace::photon::{batches, send, splat_photon};
+use crate::trace::photon::{batches, splat_photon, trace_batch};
 use crate::trace::photon_targets::PhotonTarget;
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
@@ -11,21 +11,21 @@ use crate::trace::{LightPass, RAYS_OF_A_LOOK, World};
 
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6168_6561;
-/// One in `AHEAD` of a target's photons is sent ahead to learn which are seen: at most `ENOUGH`, and none if that is
-/// fewer than `TOO_FEW`, which tell too little.
+/// One in `AHEAD` of a target's photons is sent ahead to learn which are seen: at most `MAX_SENT`, and none if that is
+/// fewer than `MIN_SENT`, which tell too little.
 const AHEAD: u64 = 8;
-const TOO_FEW: u64 = 4096;
-const ENOUGH: u64 = 1 << 16;
+const MIN_SENT: u64 = 4096;
+const MAX_SENT: u64 = 1 << 16;
 /// Most photons of all targets that the plan sends ahead, whatever the size of the image. The first number is for
 /// learning where to send the others; it is also limited to what the rays of a look trace, unless that is too few. The
 /// second is for telling which photons are seen.
-const OF_A_PLAN: u64 = 1 << 16;
-const SEEN_OF_A_PLAN: u64 = 1 << 16;
+const PLAN_PHOTONS: u64 = 1 << 16;
+const PLAN_SEEN_PHOTONS: u64 = 1 << 16;
 /// Most rays that a plan traces to learn where to send photons, and again to tell which are seen. A photon in a heap of
 /// glass balls takes a hundred.
-const MOST_RAYS: f64 = (4 * RAYS_OF_A_LOOK) as f64;
+const MAX_RAYS: f64 = (4 * RAYS_OF_A_LOOK) as f64;
 /// Photons of all targets that tell how many rays one takes.
-const FIRST: u64 = 256;
+const FIRST_SENT: u64 = 256;
 
 /// What photons sent ahead found.
 #[derive(Default)]
@@ -37,7 +37,7 @@ struct Learned {
 
 impl Learned {
     /// Estimates how many photons of each target can be traced with `rays` rays, from what these took.
-    fn each_within(&self, rays: f64) -> u64 {
+    fn photons_per_target(&self, rays: f64) -> u64 {
         let sent = self.found.iter().map(Vec::len).sum::<usize>() as f64;
         (rays * sent / (self.rays as f64 * self.found.len() as f64)) as u64
     }
@@ -48,29 +48,30 @@ impl Learned {
 fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> Learned {
     let world = world.of_the_format();
     let Some(targets) = &world.photon_targets else { return Learned::default() };
-    let of_target = |target: &PhotonTarget| numbers.start..numbers.end.min(target.photons);
-    let batches = batches(targets, of_target, world.method.seed ^ SEED);
-    let send =
-        |number: usize| send::<N, Polarized, _>(&world, targets, batches[number], true, &splat_photon::<N, Polarized>);
-    let done = in_parallel(batches.len(), &send);
+    let numbers_of = |target: &PhotonTarget| numbers.start..numbers.end.min(target.photons);
+    let batches = batches(targets, numbers_of, world.method.seed ^ SEED);
+    let trace_batch = |number: usize| {
+        trace_batch::<N, Polarized, _>(&world, targets, batches[number], true, &splat_photon::<N, Polarized>)
+    };
+    let results = in_parallel(batches.len(), &trace_batch);
     let mut learned = Learned { found: vec![Vec::new(); targets.targets.len()], rays: 0 };
-    for (batch, sent) in batches.iter().zip(done) {
+    for (batch, sent) in batches.iter().zip(results) {
         learned.rays += sent.stats.rays;
-        learned.found[batch.target].extend(sent.places);
+        learned.found[batch.target].extend(sent.outcomes);
     }
     learned
 }
 
 /// Returns the number of photons of each target that tell how many rays one takes.
-fn first_of_each(world: &World) -> u64 {
-    world.photon_targets.as_ref().map_or(0, |targets| (FIRST / targets.targets.len() as u64).max(1))
+fn first_per_target(world: &World) -> u64 {
+    world.photon_targets.as_ref().map_or(0, |targets| (FIRST_SENT / targets.targets.len() as u64).max(1))
 }
 
-/// Sends `most` photons of each target ahead, or as many as [`MOST_RAYS`] can trace, but at least [`FIRST`] in all.
-fn send_some_ahead<const N: usize>(world: &World, most: u64) -> Learned {
-    let first = most.min(first_of_each(world));
+/// Sends `max` photons of each target ahead, or as many as [`MAX_RAYS`] can trace, but at least [`FIRST_SENT`] in all.
+fn send_some_ahead<const N: usize>(world: &World, max: u64) -> Learned {
+    let first = max.min(first_per_target(world));
     let mut learned = send_ahead::<N>(world, 0..first);
-    let more = send_ahead::<N>(world, first..most.min(learned.each_within(MOST_RAYS)));
+    let more = send_ahead::<N>(world, first..max.min(learned.photons_per_target(MAX_RAYS)));
     learned.rays += more.rays;
     learned.found.iter_mut().zip(more.found).for_each(|(found, more)| found.extend(more));
     learned
@@ -80,8 +81,8 @@ fn send_some_ahead<const N: usize>(world: &World, most: u64) -> Learned {
 pub fn seen_photons(world: &World) -> Vec<f64> {
     let mut shares = vec![0.0; world.scene.lights.len()];
     let Some(targets) = &world.photon_targets else { return shares };
-    let most = (SEEN_OF_A_PLAN / targets.targets.len() as u64).clamp(1, TOO_FEW);
-    let found = in_lanes!(&world.method.basis, N => send_some_ahead::<N>(world, most)).found;
+    let max = (PLAN_SEEN_PHOTONS / targets.targets.len() as u64).clamp(1, MIN_SENT);
+    let found = in_lanes!(&world.method.basis, N => send_some_ahead::<N>(world, max)).found;
     let mut counts = vec![[0_u32; 2]; shares.len()];
     for (target, photons) in targets.targets.iter().zip(found) {
         let [sent, seen] = &mut counts[target.light];
@@ -89,8 +90,8 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
         *seen += photons.iter().filter(|photon| photon.1).count() as u32;
     }
     for group in world.photon_light_groups() {
-        let of_group = |i: usize| group.iter().map(|&light| counts[light][i]).sum::<u32>();
-        let share = f64::from(of_group(1)) / f64::from(of_group(0).max(1));
+        let count_in_group = |i: usize| group.iter().map(|&light| counts[light][i]).sum::<u32>();
+        let share = f64::from(count_in_group(1)) / f64::from(count_in_group(0).max(1));
         group.iter().for_each(|&light| shares[light] = share);
     }
     shares
@@ -100,32 +101,32 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
 /// image, and none are sent if learning enough would take too many rays.
 pub fn piloted(world: &World, light_pass: LightPass) -> World {
     let world = world.with_light_pass(Some(light_pass));
-    in_lanes!(&world.method.basis, N => guided::<N>(world))
+    in_lanes!(&world.method.basis, N => with_guided_photons::<N>(world))
 }
 
-fn guided<const N: usize>(mut world: World) -> World {
+fn with_guided_photons<const N: usize>(mut world: World) -> World {
     let targets = world.photon_targets.as_ref().map_or(1, |targets| targets.targets.len() as u64);
-    let most = OF_A_PLAN / targets;
-    if most >= TOO_FEW {
-        let first = send_ahead::<N>(&world, 0..first_of_each(&world));
-        if first.each_within(MOST_RAYS) >= TOO_FEW {
-            train::<N>(&mut world, first.each_within(RAYS_OF_A_LOOK as f64).clamp(TOO_FEW, most));
+    let max = PLAN_PHOTONS / targets;
+    if max >= MIN_SENT {
+        let first = send_ahead::<N>(&world, 0..first_per_target(&world));
+        if first.photons_per_target(MAX_RAYS) >= MIN_SENT {
+            train::<N>(&mut world, first.photons_per_target(RAYS_OF_A_LOOK as f64).clamp(MIN_SENT, max));
         }
     }
     world
 }
 
 /// Sends photons ahead, and aims the others at where those were seen.
-pub fn learn_where_to_send(world: &mut World) {
+pub fn guide_photons(world: &mut World) {
     in_lanes!(&world.method.basis, N => train::<N>(world, u64::MAX));
 }
 
-/// Sends at most `most` photons of each target ahead, and aims the others at where those were seen.
-fn train<const N: usize>(world: &mut World, most: u64) {
+/// Sends at most `max` photons of each target ahead, and aims the others at where those were seen.
+fn train<const N: usize>(world: &mut World, max: u64) {
     let targets = world.photon_targets.iter().flat_map(|targets| &targets.targets);
     let Some(least) = targets.map(|target| target.photons / AHEAD).min() else { return };
-    let ahead = least.min(ENOUGH).min(most);
-    if ahead >= TOO_FEW {
+    let ahead = least.min(MAX_SENT).min(max);
+    if ahead >= MIN_SENT {
         let found = send_ahead::<N>(world, 0..ahead).found;
         if let Some(targets) = &mut world.photon_targets {
             targets.learn(&found);
@@ -141,7 +142,7 @@ mod tests {
     use crate::trace::{Method, Smoothness, Transport};
 
     /// Returns a scene whose first light sends the given number of photons.
-    fn sending(photons: u64, text: &str) -> World {
+    fn world_sending(photons: u64, text: &str) -> World {
         let scene = Scene::parse(text, ".").expect("it is a scene");
         let transport = Transport::Random { split: 0.05, roulette: 0.05 };
         let method = Method::of_paths(Basis::rgb(ColorSpace::Rec709), transport, 0);
@@ -168,17 +169,17 @@ mod tests {
                 "[[object]]\nmaterial = \"glass\"\nshape.sphere = {{ center = [{x}, {y}, {z}], radius = 0.4 }}\n"
             );
         }
-        sending(1 << 20, &text)
+        world_sending(1 << 20, &text)
     }
 
     #[test]
     fn a_plan_sends_no_more_photons_ahead_than_it_has_time_for() {
         let world = heap();
-        let first = send_ahead::<4>(&world, 0..first_of_each(&world));
-        let all = first.rays as f64 * TOO_FEW as f64 / first_of_each(&world) as f64;
-        assert!(all > 2.0 * MOST_RAYS, "{all} rays are affordable");
-        let some = send_some_ahead::<4>(&world, TOO_FEW);
-        assert!((some.rays as f64 / MOST_RAYS - 1.0).abs() < 0.1, "{} rays", some.rays);
+        let first = send_ahead::<4>(&world, 0..first_per_target(&world));
+        let all = first.rays as f64 * MIN_SENT as f64 / first_per_target(&world) as f64;
+        assert!(all > 2.0 * MAX_RAYS, "{all} rays are affordable");
+        let some = send_some_ahead::<4>(&world, MIN_SENT);
+        assert!((some.rays as f64 / MAX_RAYS - 1.0).abs() < 0.1, "{} rays", some.rays);
         for (first, some) in first.found.iter().zip(&some.found) {
             assert!(some.len() > first.len() && some.starts_with(first), "{} and {}", first.len(), some.len());
         }
@@ -186,7 +187,7 @@ mod tests {
         let photons = |world: &World| -> Vec<u64> {
             world.photon_targets.iter().flat_map(|targets| &targets.targets).map(|target| target.photons).collect()
         };
-        assert_eq!(photons(&guided::<4>(world.clone())), photons(&world));
+        assert_eq!(photons(&with_guided_photons::<4>(world.clone())), photons(&world));
     }
 
     /// Each pane of a stack reflects a twelfth of the light. With 30 panes, a photon that took both ways never ended.
@@ -204,7 +205,7 @@ mod tests {
                 "[[object]]\nmaterial = \"pane\"\nshape.quad = {{ center = [0, 0, {z}], u = [4, 0, 0], v = [0, 4, 0] }}\n"
             );
         }
-        let learned = send_ahead::<4>(&sending(1 << 16, &text), 0..64);
+        let learned = send_ahead::<4>(&world_sending(1 << 16, &text), 0..64);
         let sent: usize = learned.found.iter().map(Vec::len).sum();
         let each = learned.rays as f64 / sent as f64;
         assert!((30.0..300.0).contains(&each), "{each} rays");

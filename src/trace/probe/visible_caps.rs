@@ -12,23 +12,23 @@ use crate::trace::width::in_lanes;
 /// Camera samples along each side of the image.
 const SIDE: u32 = 64;
 /// Number of light hits that is enough.
-const ENOUGH: usize = 2048;
+const MAX_HITS: usize = 2048;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6c61_6d70;
 
 /// Learns where lamps that may be mostly hidden are visible. Uses the format, even when a crop or overscan is rendered,
 /// so that all parts are rendered the same way.
 pub fn learn_visible_caps(world: &mut World) {
-    if !world.scene.lights.iter().any(|light| matches!(light, Light::Area(area) if area.may_show_a_cap())) {
+    if !world.scene.lights.iter().any(|light| matches!(light, Light::Area(area) if area.can_learn_visible_cap())) {
         return;
     }
     // Let paths hit lamps behind a diffuse surface, even where the image has no such paths.
-    let asked = std::mem::replace(&mut world.method.diffuse_bounces, u32::MAX);
+    let max_diffuse_bounces = std::mem::replace(&mut world.method.diffuse_bounces, u32::MAX);
     let hit = in_lanes!(&world.method.basis, N => look::<N>(world));
-    world.method.diffuse_bounces = asked;
+    world.method.diffuse_bounces = max_diffuse_bounces;
     for (id, light) in world.scene.lights.iter_mut().enumerate() {
         if let Light::Area(area) = light
-            && area.may_show_a_cap()
+            && area.can_learn_visible_cap()
         {
             let normals: Vec<DVec3> = hit.iter().filter(|(light, _)| *light == id).map(|(_, n)| *n).collect();
             area.learn_visible_cap(&normals);
@@ -39,13 +39,13 @@ pub fn learn_visible_caps(world: &mut World) {
 /// Returns the lights that paths hit by chance in directions drawn where lights were also sampled, with unit normals.
 fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
     let film = world.scene.film;
-    let met = RefCell::new(Vec::new());
-    let observer = |finding: SensorEvent| {
-        if let SensorEvent::Light(contribution) = finding
+    let hits = RefCell::new(Vec::new());
+    let observer = |event: SensorEvent| {
+        if let SensorEvent::Light(contribution) = event
             && let (Some(light), FoundBy::Hit { normal: Some(normal), scattered: true }) =
                 (contribution.light, contribution.found)
         {
-            met.borrow_mut().push((light, normal));
+            hits.borrow_mut().push((light, normal));
         }
     };
     let mut tracer = PathTracer::<N>::new(world).with_observer(&observer);
@@ -54,9 +54,9 @@ fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
     for place in (0..places).map(|i| (i * 1597) % places) {
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
         tracer.sample(&Sampler::of_pixel(world.method.seed ^ SEED, [x, y], place), [x, y]);
-        if met.borrow().len() >= ENOUGH {
+        if hits.borrow().len() >= MAX_HITS {
             break;
         }
     }
-    met.into_inner()
+    hits.into_inner()
 }

@@ -69,8 +69,8 @@ impl<'a, const N: usize> Audit<'a, N> {
         let (context, draw) = (&at.context, at.context.draw);
         let received = self.weight(path, path.throughput, draw);
         let clear = at.material.absorbs_nothing();
-        let (goes_on, parting) = (straight.map_or(Lanes::ZERO, Straight::share), draw.parting());
-        let mut absorbed: [f64; N] = std::array::from_fn(|i| 1.0 - f64::from(goes_on[i]));
+        let (passing_share, parting) = (straight.map_or(Lanes::ZERO, Straight::share), draw.parting());
+        let mut absorbed: [f64; N] = std::array::from_fn(|i| 1.0 - f64::from(passing_share[i]));
         let mut parted = [0.0; N];
         for branch in branches {
             for lane in 0..N {
@@ -80,21 +80,21 @@ impl<'a, const N: usize> Audit<'a, N> {
                 parted[lane] += if branch.crosses && at.parts { share } else { 0.0 };
             }
         }
-        let hand_over = at.parts && !path.parted;
+        let is_first_parting = at.parts && !path.parted;
         for lane in 0..N {
             // Where lanes part, those that do not cross hand over to those that do.
             let hands_over = at.parts && parting[lane] == 0.0;
             if clear && !hands_over {
                 absorbed[lane] = 0.0;
             }
-            let moved = if hand_over { received[lane] * parted[lane] } else { 0.0 };
+            let moved = if is_first_parting { received[lane] * parted[lane] } else { 0.0 };
             self.open[usize::from(path.parted)][lane] -= received[lane] * absorbed[lane] + moved;
             self.open[1][lane] += moved;
         }
     }
 
     /// Returns the weight that has not ended, as the film's red, green and blue of a white light.
-    pub fn left_open(&self, white: &White, draw: &Draw<N>) -> [f64; 3] {
+    pub fn residual(&self, white: &White, draw: &Draw<N>) -> [f64; 3] {
         let [together, parted] = [false, true].map(|parted| {
             let open = self.open[usize::from(parted)];
             white.times(draw, Lanes::from_fn(|lane| open[lane] as f32), parted)

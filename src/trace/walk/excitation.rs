@@ -30,7 +30,7 @@ pub struct Excitation<const N: usize, P> {
 impl<const N: usize, P> Excitation<N, P> {
     /// Calls `look` with what the sensor sees of light that arrives at the dye.
     pub fn seen<T>(&self, world: &World, received: &ReceivedLight<N>, look: impl FnOnce(&ReceivedLight<N>) -> T) -> T {
-        let brightness = world.dyes.as_ref().map_or(0.0, |dyes| dyes.excited(self.dye, received));
+        let brightness = world.dyes.as_ref().map_or(0.0, |dyes| dyes.brightness(self.dye, received));
         self.seen_of(brightness, look)
     }
 

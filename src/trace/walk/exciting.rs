@@ -11,12 +11,12 @@ use crate::trace::dyes::Dyes;
 use crate::trace::received_light::ReceivedLight;
 
 /// First branch number of the random numbers of dyes, beyond the branches that a path may take.
-pub const DYE: usize = 160;
+pub const DYE_BRANCH: usize = 160;
 /// Use of the random numbers that choose a dye, and what the lanes stand for.
 const CHOICE: u32 = 1;
 
 /// A path at a surface with dyes.
-pub struct Exciting<'a, const N: usize, P> {
+pub struct DyeExcitation<'a, const N: usize, P> {
     pub world: &'a World,
     pub dyes: &'a Dyes,
     pub path: &'a Path<N, P>,
@@ -29,22 +29,22 @@ pub struct Exciting<'a, const N: usize, P> {
 
 /// The ways in which the path continues.
 pub struct ExcitedPaths<const N: usize, P> {
-    pub of_dyes: Vec<(Path<N, P>, Excitation<N, P>)>,
+    pub paths: Vec<(Path<N, P>, Excitation<N, P>)>,
     /// The factor on what the surface scatters: 0 if one of the dyes is chosen.
-    pub scattered: f64,
+    pub scatter_factor: f64,
 }
 
-impl<const N: usize, P: Polarization<N>> Exciting<'_, N, P> {
+impl<const N: usize, P: Polarization<N>> DyeExcitation<'_, N, P> {
     /// Chooses the ways that are followed.
-    pub fn ways(&self, sampler: &Sampler) -> ExcitedPaths<N, P> {
+    pub fn sample_paths(&self, sampler: &Sampler) -> ExcitedPaths<N, P> {
         let Self { world, dyes, path, at, all, .. } = *self;
-        let [mut u, wavelength, ..] = sampler.four_plain(path.key.child(DYE), CHOICE);
+        let [mut u, wavelength, ..] = sampler.get_random_4d(path.key.child(DYE_BRANCH), CHOICE);
         let weight = path.throughput.weight(at.context.draw.shares(path.parted));
-        let (mut of_dyes, mut shares) = (Vec::new(), Vec::new());
+        let (mut paths, mut shares) = (Vec::new(), Vec::new());
         at.material.shares_of_dyes(&at.context, Lanes::ONE, &mut shares);
-        let of_surface = dyes.of(&world.scene, at.object);
-        let chances = dyes.chances(of_surface.clone());
-        for (number, (dye, share)) in of_surface.zip(shares).enumerate() {
+        let surface_dyes = dyes.of(&world.scene, at.object);
+        let chances = dyes.chances(surface_dyes.clone());
+        for (number, (dye, share)) in surface_dyes.zip(shares).enumerate() {
             let chance = chances.of(dye);
             let is_chosen = (0.0..chance).contains(&u);
             u -= chance;
@@ -55,21 +55,21 @@ impl<const N: usize, P: Polarization<N>> Exciting<'_, N, P> {
             let excitation = self.excitation(dye, lanes, wavelength);
             // A dye that was chosen stands for all.
             let weight = if all { weight * chance } else { weight };
-            let way = Path {
+            let excited_path = Path {
                 throughput: Throughput::starting(excitation.draw.start()).scaled(weight),
                 parted: false,
-                polarization: path.polarization.exciting(),
-                key: path.key.child(DYE + 1 + number),
+                polarization: path.polarization.for_excitation(),
+                key: path.key.child(DYE_BRANCH + 1 + number),
                 ..*path
             };
-            of_dyes.push((way, excitation));
+            paths.push((excited_path, excitation));
         }
-        let scattered = match all {
+        let scatter_factor = match all {
             true => 1.0,
             false if u < 0.0 => 0.0,
             false => 1.0 / (1.0 - chances.total()),
         };
-        ExcitedPaths { of_dyes, scattered }
+        ExcitedPaths { paths, scatter_factor }
     }
 
     /// Returns what the sensor receives from a dye that these lanes see. `wavelength` chooses what the lanes behind it
@@ -85,7 +85,7 @@ impl<const N: usize, P: Polarization<N>> Exciting<'_, N, P> {
             }
             Some(seen) => {
                 let brightness =
-                    dyes.excited(seen.dye, &ReceivedLight { source, draw: seen_by, lanes: &lanes, parted });
+                    dyes.brightness(seen.dye, &ReceivedLight { source, draw: seen_by, lanes: &lanes, parted });
                 Excitation { lanes: seen.lanes * brightness as f32, dye, draw, ..seen.clone() }
             }
         }

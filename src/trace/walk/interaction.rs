@@ -58,7 +58,7 @@ impl<'a, const N: usize> Interaction<'a, N> {
         let object = &world.scene.objects[hit.object as usize];
         let (wo, uv, number) = (-arriving.ray.direction, object.uv(&hit.intersection, point), object.material as usize);
         let (material, lobes) = (&world.scene.materials[number].material, world.lobes[number]);
-        let [flat, normal] = shading::normals_of(lobes, point, wo);
+        let [flat, normal] = shading::normals_for_lobes(lobes, point, wo);
         let (sides, present) = (boundary.sides(), arriving.present);
         let mut at = Self {
             object: hit.object,
@@ -77,7 +77,7 @@ impl<'a, const N: usize> Interaction<'a, N> {
     }
 
     /// Returns the interaction with another normal by which the surface scatters.
-    pub fn by_normal(self, normal: DVec3) -> Self {
+    pub fn with_normal(self, normal: DVec3) -> Self {
         if normal == self.context.normal {
             return self;
         }
@@ -88,19 +88,19 @@ impl<'a, const N: usize> Interaction<'a, N> {
 
     /// Returns the surface as viewed from another direction, on either side. The media stay those of this interaction.
     pub fn viewed_from(&self, wo: DVec3) -> Self {
-        let [flat, normal] = shading::normals_of(self.lobes, self.point, wo);
+        let [flat, normal] = shading::normals_for_lobes(self.lobes, self.point, wo);
         let turned = ScatterContext { wo, normal, ..self.context };
         let context = if wo.dot(self.flat) > 0.0 { turned } else { turned.turned_around() };
         Self { flat, context, ..*self }
     }
 
     /// Returns a surface that has only some of its material's lobes.
-    pub fn of_lobes(&self, lobes: Lobes) -> Self {
+    pub fn with_lobes(&self, lobes: Lobes) -> Self {
         Self { context: ScatterContext { lobes, ..self.context }, ..*self }
     }
 
     /// Returns the surface as the light that excites a dye sees it: white, in lanes that stand for what excites it.
-    pub fn of_dye(&self, white: &'a Material<Table>, draw: &'a Draw<N>) -> Self {
+    pub fn as_dye(&self, white: &'a Material<Table>, draw: &'a Draw<N>) -> Self {
         let context = ScatterContext { draw, present: draw.start(), ..self.context };
         Self { material: white, lobes: Lobes::DIFFUSE_REFLECTION, context, parts: false, ..*self }
     }

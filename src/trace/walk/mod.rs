@@ -19,9 +19,9 @@ mod walker;
 
 pub use audit::Audit;
 pub use excitation::Excitation;
-pub use exciting::{DYE, Exciting};
+pub use exciting::{DYE_BRANCH, DyeExcitation};
 pub use interaction::{Interaction, SurfaceHit, parts};
-pub use path::{Among, Path, PathKind, ScatterSample};
+pub use path::{ObjectSet, Path, PathKind, ScatterSample};
 pub use polarization::{FoundLight, PassThrough, Polarization, SeenPhoton};
 pub use polarized::Polarized;
 pub use rows::Rows;

@@ -18,10 +18,10 @@ pub struct Path<const N: usize, P = Polarized> {
     pub left: Option<Primitive>,
     pub throughput: Throughput<N>,
     /// The factor of radiance between the medium at the path's end and the camera's, times what the densities of
-    /// [aimed](Self::aimed) bounces change. Neither is a measure of importance.
+    /// [aimed](Self::aiming_factor) bounces change. Neither is a measure of importance.
     pub eta_scale: f64,
     /// The factor by which the densities of bounces aimed at bright places have changed the throughput.
-    pub aimed: f32,
+    pub aiming_factor: f32,
     /// The bodies that the ray is inside of.
     pub media: Media,
     /// Whether lanes have parted on the way. From then on, other lanes count.
@@ -31,7 +31,7 @@ pub struct Path<const N: usize, P = Polarized> {
     /// Number of surfaces hit so far.
     pub vertices: u32,
     /// Number of surfaces hit so far that belong to bodies hidden inside others.
-    pub hidden: u32,
+    pub hidden_vertices: u32,
     /// Length of the path so far, from the camera itself and not from the near plane.
     pub length: f64,
     /// The kind of the path so far.
@@ -52,11 +52,11 @@ pub struct Path<const N: usize, P = Polarized> {
     /// Whether only smooth surfaces have mirrored or refracted it. The camera then sees what it hits next.
     pub is_seen: bool,
     /// The objects that exist for it.
-    pub among: Among,
+    pub object_set: ObjectSet,
     /// Whether light was already estimated at light vertices, which count no more. For a photon: whether they carry it.
     pub resampled: bool,
     /// Whether all of its light is found otherwise, so that the path only serves the accounting.
-    pub unlit: bool,
+    pub ignores_light: bool,
     /// The number of the excitation that it follows, if any. Its lanes then stand for what excites a dye.
     pub excitation: Option<u32>,
     /// The lobe by which the first surface sends its light to the camera, if layers need that.
@@ -65,7 +65,7 @@ pub struct Path<const N: usize, P = Polarized> {
 
 /// The objects that exist for a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Among {
+pub enum ObjectSet {
     All,
     /// Objects in the plate, and those that light it.
     Plate,
@@ -93,7 +93,7 @@ impl PathKind {
     }
 
     /// Returns whether photons may have carried its light to the last surface that scattered it widely.
-    pub fn is_of_photons(self) -> bool {
+    pub fn is_reachable_by_photons(self) -> bool {
         matches!(self, Self::Wide | Self::Smooth)
     }
 
@@ -107,13 +107,13 @@ impl PathKind {
     }
 
     /// Returns the kind after one more surface. `wide` tells whether light left it by a density of directions, and
-    /// `followed` whether it can be followed forward the same way. Photons are splatted from the first surface, and
+    /// `reversible` whether it can be followed forward the same way. Photons are splatted from the first surface, and
     /// gathered from others.
-    pub fn then(self, gathers: bool, wide: bool, followed: impl Fn() -> bool) -> Self {
+    pub fn after_bounce(self, gathers: bool, wide: bool, reversible: impl Fn() -> bool) -> Self {
         match (self, wide) {
             (Self::Camera, true) => Self::Wide,
             (_, true) if gathers => Self::Wide,
-            (Self::Wide | Self::Smooth, false) if followed() => Self::Smooth,
+            (Self::Wide | Self::Smooth, false) if reversible() => Self::Smooth,
             _ => Self::Other,
         }
     }
@@ -133,14 +133,14 @@ pub struct ScatterSample {
     /// Whether every light was sampled there, or only one.
     pub all_lights: bool,
     /// Whether the path has passed through surfaces since.
-    pub passed: bool,
+    pub passed_through: bool,
     /// Whether light vertices were sampled from there.
     pub resampled: bool,
 }
 
 impl ScatterSample {
     /// Returns the sample for a direction that was sampled with a density, and that may cross the surface.
-    pub fn toward(self, pdf: f64, crosses: bool) -> Self {
+    pub fn with_pdf(self, pdf: f64, crosses: bool) -> Self {
         Self { pdf, normal: if crosses { -self.normal } else { self.normal }, ..self }
     }
 }
@@ -148,13 +148,13 @@ impl ScatterSample {
 impl<const N: usize, P> Path<N, P> {
     /// Returns the number of surfaces hit so far that light interacts with: `max_bounces` limits it.
     pub fn surfaces(&self) -> u32 {
-        self.vertices - self.hidden
+        self.vertices - self.hidden_vertices
     }
 }
 
 impl<const N: usize, P: Polarization<N>> Path<N, P> {
     pub fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
-        let (media, polarization) = (world.media_at_camera(&ray), P::of_camera(world, &ray));
+        let (media, polarization) = (world.media_at_camera(&ray), P::at_camera(world, &ray));
         let path = Self::starting(world, draw, PathKind::Camera, ray, media, polarization);
         let camera = &world.scene.camera;
         let (throughput, length) = (path.throughput.scaled(camera.transmittance()), camera.way_to_start(ray.direction));
@@ -163,7 +163,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
 
     /// Returns the path of a ray that leaves a light.
     pub fn from_light(world: &World, draw: &Draw<N>, ray: Ray, light: LightId) -> Self {
-        let (media, polarization) = (world.media_at_light(light, &ray), P::of_light(world, &ray));
+        let (media, polarization) = (world.media_at_light(light, &ray), P::at_light(world, &ray));
         Self::starting(world, draw, PathKind::Other, ray, media, polarization)
     }
 
@@ -174,12 +174,12 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
             left: None,
             throughput: Throughput::starting(draw.start()),
             eta_scale: 1.0,
-            aimed: 1.0,
+            aiming_factor: 1.0,
             media,
             parted: false,
             key: BranchKey::CAMERA,
             vertices: 0,
-            hidden: 0,
+            hidden_vertices: 0,
             length: 0.0,
             kind,
             left_to_photons: false,
@@ -189,9 +189,9 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
             polarization,
             bounces: 0,
             is_seen: true,
-            among: Among::All,
+            object_set: ObjectSet::All,
             resampled: false,
-            unlit: false,
+            ignores_light: false,
             excitation: None,
             first: None,
         }
@@ -200,25 +200,25 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
     /// Returns the path beyond a surface that it passes through as if nothing were there.
     ///
     /// Lights beyond were sampled through the surface: passing through does not change the kind of a path.
-    pub fn passed(&self, point: &SurfacePoint) -> Self {
-        let scatter = self.scatter.map(|scatter| ScatterSample { passed: true, ..scatter });
+    pub fn beyond_surface(&self, point: &SurfacePoint) -> Self {
+        let scatter = self.scatter.map(|scatter| ScatterSample { passed_through: true, ..scatter });
         Self { ray: point.leave(self.ray.direction), scatter, ..*self }
     }
 
     /// Returns the path beyond a surface that it passes through in part. The surface is not counted.
     #[cold]
     #[inline(never)]
-    pub fn passed_in_part(&self, point: &SurfacePoint, through: &PassThrough<N, P>) -> Self {
+    pub fn transmitted_part(&self, point: &SurfacePoint, through: &PassThrough<N, P>) -> Self {
         let throughput = self.throughput.through(through.straight.share());
         let polarization = through.polarization;
-        Self { throughput, polarization, vertices: self.vertices - 1, ..self.passed(point) }
+        Self { throughput, polarization, vertices: self.vertices - 1, ..self.beyond_surface(point) }
     }
 
     /// Returns the lobe by which the first surface sends light to the camera that the path finds at a surface, in the
     /// direction `wi`, which may lead beyond it. Returns `None` if layers do not need that.
     #[inline]
     pub fn first_lobe(&self, world: &World, at: &Interaction<N>, wi: DVec3, crosses: bool) -> Option<FirstLobe> {
-        if self.bounces > 0 || !world.layers.lobes_apart {
+        if self.bounces > 0 || !world.layers.separates_lobes {
             return self.first;
         }
         let Interaction { material, lobes, context, .. } = at;
@@ -228,7 +228,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
     /// Returns whether photons carry the direct light that a narrow lobe sends the path, for lights that send photons.
     #[inline]
     pub fn leaves_narrow_to_photons(&self, world: &World, at: &Interaction<N>) -> bool {
-        let has_landed = self.kind.is_of_photons() && !self.is_narrow && self.among == Among::All;
+        let has_landed = self.kind.is_reachable_by_photons() && !self.is_narrow && self.object_set == ObjectSet::All;
         has_landed && at.lobes.has_narrow_apart() && world.is_photon_target(at.object, at.point.position)
     }
 
@@ -240,7 +240,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
 
     /// Returns its ray, as it arrives at a surface.
     #[inline(always)]
-    pub fn arriving(&self) -> IncidentRay<'_, N> {
+    pub fn incident_ray(&self) -> IncidentRay<'_, N> {
         IncidentRay { ray: &self.ray, present: self.throughput.present(), parted: self.parted }
     }
 
@@ -251,12 +251,12 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
 
     /// Returns the part of a camera sample's weight that the path has, as one of its siblings.
     pub fn share(&self, draw: &Draw<N>) -> f64 {
-        self.weight(draw) * f64::from(self.aimed) / draw.siblings(self.parted)
+        self.weight(draw) * f64::from(self.aiming_factor) / draw.siblings(self.parted)
     }
 
     /// Replaces the media around its end, without crossing a surface: by those that the camera sees, or by those that
     /// exist for all other light. Flux is preserved.
-    pub fn enter(&mut self, world: &World, draw: &Draw<N>, media: Media) {
+    pub fn switch_media(&mut self, world: &World, draw: &Draw<N>, media: Media) {
         let sides = [self.media, media].map(|media| media.inside(&world.scene));
         self.media = media;
         if sides[0] == sides[1] {
@@ -264,7 +264,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         }
         let weight = |throughput: Throughput<N>| throughput.weight(draw.shares(self.parted));
         let before = weight(self.throughput);
-        self.throughput = self.throughput.through(media::change_of_radiance(&world.scene, draw, sides));
+        self.throughput = self.throughput.through(media::radiance_factor(&world.scene, draw, sides));
         self.eta_scale *= if before > 0.0 { weight(self.throughput) / before } else { 1.0 };
     }
 

@@ -64,10 +64,10 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     type RowTransfer: Debug;
 
     /// Returns the state of a path that starts at the camera along a ray.
-    fn of_camera(world: &World, ray: &Ray) -> Self;
+    fn at_camera(world: &World, ray: &Ray) -> Self;
 
     /// Returns the state of a path that starts at a light, which emits unpolarized light.
-    fn of_light(world: &World, ray: &Ray) -> Self;
+    fn at_light(world: &World, ray: &Ray) -> Self;
 
     /// Returns the state after a surface that lets light pass through, and sets `straight` to the share that passes.
     fn through(self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self;
@@ -85,17 +85,17 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
     /// Returns how much polarization may change light along `wi`, as X + Y + Z. `on_its_way` is by `toward` and panes.
-    fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64;
+    fn change_along(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64;
 
     /// Returns how much polarization may change light that the path has hit, as X + Y + Z.
-    fn moved_of_met(&self, light: &FoundLight<N, Self>) -> f64;
+    fn change_of_hit(&self, light: &FoundLight<N, Self>) -> f64;
 
     /// Returns the state of light that excites a dye where the path sees one: the dye absorbs all polarizations alike.
-    fn exciting(&self) -> Self;
+    fn for_excitation(&self) -> Self;
 
     /// Returns the state where the path hits polarized light from the unit vector `wi`, or `None` if the light is
-    /// unpolarized. Converts `shone` from what an unpolarized light would emit to what the path receives.
-    fn lit_by(&self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Option<Self>;
+    /// unpolarized. Converts `emission` from what an unpolarized light would emit to what the path receives.
+    fn lit_by(&self, light: &Light<Table>, wi: DVec3, emission: &mut Lanes<N>) -> Option<Self>;
 
     /// Returns the state of light that is followed forward, beyond a surface that it reached from the unit vector `wi`,
     /// on its way to the viewer. Converts `bsdf_cos`, of the surface as it is viewed, to that of the path's light.
@@ -113,7 +113,7 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     ) -> SeenPhoton<N>;
 
     /// Returns what is stored of it where a photon has landed.
-    fn landed(&self, at: &Interaction<N>) -> Self::Stored;
+    fn to_stored(&self, at: &Interaction<N>) -> Self::Stored;
 
     /// Joins a camera path at a surface with a photon that landed near, along `wi`. Makes `bsdf_cos` that of both.
     fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Stored, bsdf_cos: &mut Lanes<N>) -> Self;
@@ -129,7 +129,7 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     ) -> f64;
 
     /// Converts what is stored with a photon to other lanes.
-    fn read_stored(photon: &Self::Stored, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Stored;
+    fn convert_stored(photon: &Self::Stored, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Stored;
 
     /// Returns S1, S2 and S3 of unpolarized light that the path has hit, as factors on S0, if they are requested.
     fn stokes(&self) -> Option<[Lanes<N>; 3]>;

@@ -24,7 +24,7 @@ pub struct Polarized {
 
 impl Polarized {
     /// The state at a camera that sees all polarizations alike.
-    pub const NOT: Self = Self { degree: 0.0, growth: 1.0 };
+    pub const NONE: Self = Self { degree: 0.0, growth: 1.0 };
 
     /// Returns the state after a surface of a degree, 0 to 1.
     pub fn after(self, degree: f32) -> Self {
@@ -37,7 +37,7 @@ impl Polarized {
     }
 
     /// Returns the state after a path segment that polarizes unpolarized light like `other`.
-    pub fn joined(self, other: Self) -> Self {
+    pub fn followed_by(self, other: Self) -> Self {
         let growth = (other.growth * self.growth).min(f32::MAX);
         Self { growth, ..self }.after(other.degree)
     }
@@ -53,18 +53,18 @@ impl Polarized {
     }
 
     /// Returns the state with light from the direction `wi`, polarized on its way, that a surface scatters.
-    pub fn brought<const N: usize>(
+    pub fn joined_at<const N: usize>(
         self,
         material: &Material<Table>,
         context: &ScatterContext<N>,
         wi: DVec3,
         on_its_way: Self,
     ) -> Self {
-        self.scattered(material, context, wi).joined(on_its_way)
+        self.scattered(material, context, wi).followed_by(on_its_way)
     }
 
     /// Returns whether polarization may have changed anything, or may do so at the next surface.
-    pub fn is_any(self) -> bool {
+    pub fn may_matter(self) -> bool {
         self.degree != 0.0 || self.growth != 1.0
     }
 
@@ -78,12 +78,12 @@ impl<const N: usize> Polarization<N> for Polarized {
     type Stored = Self;
     type RowTransfer = ();
 
-    fn of_camera(_: &World, _: &Ray) -> Self {
-        Self::NOT
+    fn at_camera(_: &World, _: &Ray) -> Self {
+        Self::NONE
     }
 
-    fn of_light(_: &World, _: &Ray) -> Self {
-        Self::NOT
+    fn at_light(_: &World, _: &Ray) -> Self {
+        Self::NONE
     }
 
     #[inline]
@@ -104,22 +104,22 @@ impl<const N: usize> Polarization<N> for Polarized {
 
     #[inline(always)]
     fn toward(&self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
-        Self::NOT
+        Self::NONE
     }
 
-    fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64 {
-        if !self.is_any() && !light.world.has_see_through() {
+    fn change_along(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64 {
+        if !self.may_matter() && !light.world.has_see_through() {
             return 0.0;
         }
-        let change = self.brought(at.material, &at.context, wi, *on_its_way).change();
+        let change = self.joined_at(at.material, &at.context, wi, *on_its_way).change();
         if change == 0.0 { 0.0 } else { change * light.world.amount(light.rgb) }
     }
 
-    fn moved_of_met(&self, light: &FoundLight<N, Self>) -> f64 {
-        if self.is_any() { self.change() * light.world.amount(light.rgb) } else { 0.0 }
+    fn change_of_hit(&self, light: &FoundLight<N, Self>) -> f64 {
+        if self.may_matter() { self.change() * light.world.amount(light.rgb) } else { 0.0 }
     }
 
-    fn exciting(&self) -> Self {
+    fn for_excitation(&self) -> Self {
         Self { degree: 0.0, ..*self }
     }
 
@@ -130,7 +130,7 @@ impl<const N: usize> Polarization<N> for Polarized {
 
     #[inline(always)]
     fn forward(&self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
-        Self::NOT
+        Self::NONE
     }
 
     fn seen(
@@ -141,24 +141,24 @@ impl<const N: usize> Polarization<N> for Polarized {
         _: &World,
         _: &Ray,
     ) -> SeenPhoton<N> {
-        let change = on_its_way.brought(at.material, viewed, at.context.wo, *self).change() as f32;
+        let change = on_its_way.joined_at(at.material, viewed, at.context.wo, *self).change() as f32;
         SeenPhoton { change: Lanes([change; N]), factor: None, stokes: None }
     }
 
-    fn landed(&self, _: &Interaction<N>) -> Self {
+    fn to_stored(&self, _: &Interaction<N>) -> Self {
         *self
     }
 
     #[inline(always)]
     fn join(&self, _: &Interaction<N>, _: DVec3, _: &Self, _: &mut Lanes<N>) -> Self {
-        Self::NOT
+        Self::NONE
     }
 
     fn change_of_joined(&self, at: &Interaction<N>, wi: DVec3, photon: &Self, _: &Self, _: Lanes<N>) -> f64 {
-        self.brought(at.material, &at.context, wi, *photon).change()
+        self.joined_at(at.material, &at.context, wi, *photon).change()
     }
 
-    fn read_stored(photon: &Self, _: impl Fn(Lanes<N>) -> Lanes<N>) -> Self {
+    fn convert_stored(photon: &Self, _: impl Fn(Lanes<N>) -> Lanes<N>) -> Self {
         *photon
     }
 
@@ -174,10 +174,10 @@ mod tests {
 
     #[test]
     fn degrees_add_as_velocities_do() {
-        let twice = Polarized::NOT.after(0.5).after(0.0).after(0.5);
+        let twice = Polarized::NONE.after(0.5).after(0.0).after(0.5);
         assert_eq!(twice, Polarized { degree: 0.8, growth: 1.25 });
-        let brewster = Polarized::NOT.after(1.0).after(0.0).after(1.0);
+        let brewster = Polarized::NONE.after(1.0).after(0.0).after(1.0);
         assert_eq!((brewster.degree, brewster.change()), (1.0, 1.0));
-        assert!((0..1000).fold(Polarized::NOT, |path, _| path.after(1.0)).change().is_finite());
+        assert!((0..1000).fold(Polarized::NONE, |path, _| path.after(1.0)).change().is_finite());
     }
 }

@@ -20,15 +20,15 @@ impl Rotation {
         (length > 0.0).then_some(Self(((c * c - t * t) * inverse) as f32, (2.0 * c * t * inverse) as f32))
     }
 
-    /// Of the linear components, 1 and 2.
+    /// Rotates the linear components, 1 and 2.
     #[inline(always)]
-    pub fn of<const K: usize>(self, one: [f32; K], two: [f32; K]) -> [[f32; K]; 2] {
+    pub fn apply<const K: usize>(self, one: [f32; K], two: [f32; K]) -> [[f32; K]; 2] {
         let Self(c, s) = self;
         [from_fn(|k| one[k] * c + two[k] * s), from_fn(|k| two[k] * c - one[k] * s)]
     }
 }
 
 /// Returns a unit vector perpendicular to z, near a direction.
-pub fn across(z: DVec3, near: DVec3) -> DVec3 {
+pub fn perpendicular(z: DVec3, near: DVec3) -> DVec3 {
     (near - z * z.dot(near)).try_normalize().unwrap_or_else(|| Frame::about(z).to_world(DVec3::X))
 }

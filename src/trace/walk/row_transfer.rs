@@ -17,7 +17,7 @@ pub struct Exitant<const N: usize> {
 
 impl<const N: usize> Exitant<N> {
     /// Returns this way, followed forward: the light then comes from the viewer.
-    pub fn turned_back(self) -> Self {
+    pub fn reversed(self) -> Self {
         let [to, from] = self.z;
         Self { z: [-from, -to], ..self }
     }
@@ -27,18 +27,18 @@ impl<const N: usize> Exitant<N> {
 #[derive(Debug)]
 pub struct RowTransfer<const N: usize> {
     /// Whether any polarization is left. If not, nothing but `change.x` has a meaning.
-    pub is_any_left: bool,
+    pub is_polarized: bool,
     pub mueller: Mueller<N>,
     pub change: Change<N>,
     /// The unit normal of the plane at which a shading normal folds the light.
-    pub folded_at: Option<DVec3>,
+    pub fold_plane: Option<DVec3>,
     /// Light that is folded into a direction to which light also comes unfolded.
-    pub folded_light: Option<Box<FoldedTransport<N>>>,
+    pub folded_light: Option<Box<FoldedLight<N>>>,
 }
 
 /// How rows change by light that is folded into the direction of other light.
 #[derive(Debug)]
-pub struct FoldedTransport<const N: usize> {
+pub struct FoldedLight<const N: usize> {
     pub mueller: Mueller<N>,
     pub change: Change<N>,
     /// The parts that leave of the path's light: of the other light, and of the folded light.
@@ -47,6 +47,6 @@ pub struct FoldedTransport<const N: usize> {
 
 impl<const N: usize> RowTransfer<N> {
     pub fn new() -> Self {
-        Self { is_any_left: false, mueller: Mueller::NONE, change: Change::NONE, folded_at: None, folded_light: None }
+        Self { is_polarized: false, mueller: Mueller::NONE, change: Change::NONE, fold_plane: None, folded_light: None }
     }
 }

@@ -12,8 +12,8 @@ use std::array::from_fn;
 use super::change::{Change, Weights};
 use super::interaction::Interaction;
 use super::polarization::{FoundLight, Polarization, SeenPhoton};
-use super::rotation::{Rotation, across};
-use super::row_transfer::{Exitant, FoldedTransport, RowTransfer};
+use super::rotation::{Rotation, perpendicular};
+use super::row_transfer::{Exitant, FoldedLight, RowTransfer};
 use super::shading;
 use super::slots::Slots;
 use crate::light::Light;
@@ -52,13 +52,13 @@ fn inverse(x: f32) -> f32 {
 }
 
 /// Returns the part of unpolarized light from a direction that leaves a surface, by the normal by which it scatters.
-fn evaluated<const N: usize>(at: &Interaction<N>, wi: DVec3) -> Lanes<N> {
+fn bsdf_value<const N: usize>(at: &Interaction<N>, wi: DVec3) -> Lanes<N> {
     at.material.evaluate(&at.context, wi).map_or(Lanes::ZERO, |(light, _)| light)
 }
 
 impl<const N: usize, const K: usize> Rows<N, K> {
     /// Returns the rows of light that hits no surface before it reaches the sensor, which has image right at `x`.
-    fn starting(x: DVec3, compares: bool) -> Self {
+    fn initial(x: DVec3, compares: bool) -> Self {
         let identity = from_fn(|part| from_fn(|row| if row == part { 1.0 } else { 0.0 }));
         Self { x, weights: [identity; N], compares }
     }
@@ -67,32 +67,32 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     #[inline(always)]
     fn find_change(&self, mueller: &Mueller<N>, exitant: &Exitant<N>, change: &mut Change<N>, share: &mut Lanes<N>) {
         let Exitant { value, lanes, z: [z, onward] } = exitant;
-        let (z, onward, met) = (*z, *onward, Rotation::new(*z, self.x, mueller.axis));
-        let inward = mueller.base.as_ref().map(|base| across(onward, onward.cross(base.normal)));
-        change.x = match (inward, met) {
+        let (z, onward, to_block) = (*z, *onward, Rotation::new(*z, self.x, mueller.axis));
+        let inward = mueller.base.as_ref().map(|base| perpendicular(onward, onward.cross(base.normal)));
+        change.x = match (inward, to_block) {
             (Some(inward), None) => inward,
-            (None, None) => across(onward, self.x),
+            (None, None) => perpendicular(onward, self.x),
             (_, Some(_)) => mueller.axis,
         };
-        change.met = met.unwrap_or(Rotation::NONE);
+        change.to_block = to_block.unwrap_or(Rotation::NONE);
         if let (Some(base), Some(inward)) = (&mueller.base, inward) {
             change.base = [Rotation::new(z, self.x, z.cross(base.normal)), Rotation::new(onward, inward, change.x)]
                 .map(|turn| turn.unwrap_or(Rotation::NONE));
         }
-        change.alone = lanes.only();
+        change.only_lane = lanes.single_lane();
         if self.compares {
             change.value = *value;
             change.scale = Lanes::from_fn(|i| inverse(value[i]));
-        } else if let Some(i) = change.alone {
+        } else if let Some(i) = change.only_lane {
             change.value.0[i] = value[i];
-            let [[first], ..] = change.of_both(mueller, i, self.first_row(i));
+            let [[first], ..] = change.apply(mueller, i, self.first_row(i));
             change.scale.0[i] = inverse(first);
             share.0[i] *= first.max(0.0) * inverse(value[i]);
         } else {
             change.value = *value;
             let firsts: Lanes<N> = match mueller.base {
-                None => Lanes::from_fn(|i| change.of_block(&mueller.block, i, self.first_row(i))[0][0]),
-                Some(_) => Lanes::from_fn(|i| change.of_both(mueller, i, self.first_row(i))[0][0]),
+                None => Lanes::from_fn(|i| change.apply_block(&mueller.block, i, self.first_row(i))[0][0]),
+                Some(_) => Lanes::from_fn(|i| change.apply(mueller, i, self.first_row(i))[0][0]),
             };
             change.scale = Lanes::from_fn(|i| inverse(firsts[i]));
             *share = Lanes::from_fn(|i| share[i] * (if firsts[i] > 0.0 { firsts[i] } else { 0.0 } * inverse(value[i])));
@@ -106,37 +106,37 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     }
 
     /// Returns the first weight of the first row, from which the image is made.
-    fn firsts(&self) -> Lanes<N> {
+    fn first_weights(&self) -> Lanes<N> {
         Lanes::from_fn(|i| self.weights[i][0][0])
     }
 
     /// Sets one lane.
     #[inline(always)]
-    fn set(&mut self, i: usize, weights: Weights<K>, scale: f32) {
+    fn set_lane(&mut self, i: usize, weights: Weights<K>, scale: f32) {
         self.weights[i] = weights.map(|part| part.map(|weight| weight * scale));
     }
 
     /// Becomes the rows beyond a surface, given the rows `before`. Lanes that are not on the ray stay as they are.
-    fn go(&mut self, before: &Self, mueller: &Mueller<N>, change: &Change<N>) {
+    fn transform(&mut self, before: &Self, mueller: &Mueller<N>, change: &Change<N>) {
         (self.x, self.compares) = (change.x, before.compares);
-        match (change.alone, &mueller.base) {
-            (Some(i), _) => self.set(i, change.of_both(mueller, i, before.weights[i]), change.scale[i]),
+        match (change.only_lane, &mueller.base) {
+            (Some(i), _) => self.set_lane(i, change.apply(mueller, i, before.weights[i]), change.scale[i]),
             (None, None) => {
                 for i in 0..N {
-                    self.set(i, change.of_block(&mueller.block, i, before.weights[i]), change.scale[i]);
+                    self.set_lane(i, change.apply_block(&mueller.block, i, before.weights[i]), change.scale[i]);
                 }
             }
             (None, Some(_)) => {
                 for i in 0..N {
-                    self.set(i, change.of_both(mueller, i, before.weights[i]), change.scale[i]);
+                    self.set_lane(i, change.apply(mueller, i, before.weights[i]), change.scale[i]);
                 }
             }
         }
-        match change.alone {
+        match change.only_lane {
             _ if self.compares => {}
             Some(i) if self.degree_squared(i) <= 1.0 => {}
-            Some(i) => self.bound(i),
-            None => (0..N).for_each(|i| self.bound(i)),
+            Some(i) => self.limit_degree(i),
+            None => (0..N).for_each(|i| self.limit_degree(i)),
         }
     }
 
@@ -148,7 +148,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
 
     /// Limits the degree of polarization to 1, because of rounding.
     #[inline(always)]
-    fn bound(&mut self, i: usize) {
+    fn limit_degree(&mut self, i: usize) {
         let squared = self.degree_squared(i);
         let within = 1.0 / if squared > 1.0 { squared } else { 1.0 }.sqrt();
         self.weights[i][1..].iter_mut().for_each(|part| part[0] *= within);
@@ -156,21 +156,21 @@ impl<const N: usize, const K: usize> Rows<N, K> {
 
     /// Passes a surface, and sets `share` to what leaves of the path's light.
     #[inline(never)]
-    fn pass(&mut self, mueller: &Mueller<N>, exitant: &Exitant<N>, share: &mut Lanes<N>) {
+    fn pass_surface(&mut self, mueller: &Mueller<N>, exitant: &Exitant<N>, share: &mut Lanes<N>) {
         let (before, mut change) = (*self, Change::NONE);
         self.find_change(mueller, exitant, &mut change, share);
-        self.go(&before, mueller, &change);
+        self.transform(&before, mueller, &change);
     }
 
     /// Sets `mueller` to what a surface does to light that leaves it in one way, and returns that way.
     #[inline(always)]
-    fn meet(at: &Interaction<N>, incoming: Incoming, value: Lanes<N>, mueller: &mut Mueller<N>) -> Exitant<N> {
+    fn set_mueller(at: &Interaction<N>, incoming: Incoming, value: Lanes<N>, mueller: &mut Mueller<N>) -> Exitant<N> {
         at.material.mueller(&at.context, incoming, mueller);
         Exitant { value, lanes: incoming.lanes, z: [at.context.wo, -incoming.wi] }
     }
 
     /// Becomes the rows beyond a surface that leaves no polarization, with `x` as their frame.
-    fn lose(&mut self, before: &Self, x: DVec3) {
+    fn depolarize(&mut self, before: &Self, x: DVec3) {
         (self.x, self.compares) = (x, before.compares);
         for (weights, [firsts, ..]) in self.weights.iter_mut().zip(before.weights) {
             *weights = [firsts, [0.0; K], [0.0; K], [0.0; K]];
@@ -179,7 +179,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
 
     /// Mirrors the rows in a plane, for light that a shading normal folded there.
     fn fold(&mut self, flat: DVec3) {
-        self.x = shading::folded(self.x, flat);
+        self.x = shading::folded_direction(self.x, flat);
         for weights in &mut self.weights {
             weights[2..].iter_mut().flatten().for_each(|weight| *weight *= -1.0);
         }
@@ -189,7 +189,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     #[inline(always)]
     fn unfolded(at: &Interaction<N>, incoming: Incoming) -> Option<Incoming> {
         let is_folded = at.flat != at.context.normal && (incoming.wi.dot(at.context.normal) < 0.0) != incoming.crosses;
-        is_folded.then(|| Incoming { wi: shading::folded(incoming.wi, at.flat), ..incoming })
+        is_folded.then(|| Incoming { wi: shading::folded_direction(incoming.wi, at.flat), ..incoming })
     }
 
     /// Returns the direction that a shading normal folds to `incoming`, if the material also sends light there
@@ -199,17 +199,17 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         if at.flat == at.context.normal || incoming.single {
             return None;
         }
-        let folded = shading::folded(incoming.wi, at.flat);
-        let comes = |wi: DVec3| (wi.dot(at.context.normal) < 0.0) == incoming.crosses;
-        (comes(incoming.wi) && comes(folded)).then_some(Incoming { wi: folded, ..incoming })
+        let folded = shading::folded_direction(incoming.wi, at.flat);
+        let is_on_side = |wi: DVec3| (wi.dot(at.context.normal) < 0.0) == incoming.crosses;
+        (is_on_side(incoming.wi) && is_on_side(folded)).then_some(Incoming { wi: folded, ..incoming })
     }
 
     /// Merges rows of light that arrives in the same direction, which is z, in proportion to the light of both.
-    fn take_in(&mut self, other: &Self, z: DVec3, [own, others]: &[Lanes<N>; 2]) {
+    fn merge(&mut self, other: &Self, z: DVec3, [own, others]: &[Lanes<N>; 2]) {
         let turn = Rotation::new(z, other.x, self.x).unwrap_or(Rotation::NONE);
         for (i, weights) in self.weights.iter_mut().enumerate() {
             let [p0, p1, p2, p3] = other.weights[i];
-            let [r1, r2] = turn.of(p1, p2);
+            let [r1, r2] = turn.apply(p1, p2);
             let share = others[i] * inverse(own[i] + others[i]);
             for (part, other) in weights.iter_mut().zip([p0, r1, r2, p3]) {
                 *part = from_fn(|k| part[k] + share * (other[k] - part[k]));
@@ -227,46 +227,46 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         folded: Incoming,
         [straight, left]: [Lanes<N>; 2],
         share: &mut Lanes<N>,
-    ) -> FoldedTransport<N> {
-        let (value, mut mueller, mut change) = (evaluated(at, folded.wi), Mueller::NONE, Change::NONE);
-        let (exitant, mut light) = (Self::meet(at, folded, value, &mut mueller), value);
+    ) -> FoldedLight<N> {
+        let (value, mut mueller, mut change) = (bsdf_value(at, folded.wi), Mueller::NONE, Change::NONE);
+        let (exitant, mut light) = (Self::set_mueller(at, folded, value, &mut mueller), value);
         self.find_change(&mueller, &exitant, &mut change, &mut light);
         if !self.compares {
             *share = Lanes::from_fn(|i| share[i] * (left[i] + light[i]) * inverse(straight[i] + value[i]));
         }
-        FoldedTransport { mueller, change, lights: [left, light] }
+        FoldedLight { mueller, change, lights: [left, light] }
     }
 
     /// Merges light folded into the direction of the rows' light, which is z. `before` are the rows at the surface.
-    fn take_in_besides(&mut self, before: &Self, folded_light: &FoldedTransport<N>, z: DVec3, flat: DVec3) {
+    fn merge_folded(&mut self, before: &Self, folded_light: &FoldedLight<N>, z: DVec3, flat: DVec3) {
         let mut other = *before;
-        other.go(before, &folded_light.mueller, &folded_light.change);
+        other.transform(before, &folded_light.mueller, &folded_light.change);
         other.fold(flat);
-        self.take_in(&other, z, &folded_light.lights);
+        self.merge(&other, z, &folded_light.lights);
     }
 
     /// Returns the rows after a surface, along a direction that shading normals may have folded. Converts `bsdf_cos` to
     /// that of the path.
-    fn after(&self, at: &Interaction<N>, wi: DVec3, value: Option<Lanes<N>>, bsdf_cos: &mut Lanes<N>) -> Self {
+    fn after_surface(&self, at: &Interaction<N>, wi: DVec3, value: Option<Lanes<N>>, bsdf_cos: &mut Lanes<N>) -> Self {
         let mut after = *self;
         if let Material::Diffuse(_) = at.material {
-            after.lose(self, across(wi, self.x));
+            after.depolarize(self, perpendicular(wi, self.x));
             return after;
         }
-        let lanes = at.context.present.not_zero();
+        let lanes = at.context.present.nonzero();
         let incoming = Incoming { wi, crosses: wi.dot(at.flat) < 0.0, single: false, lanes };
         let drawn = Self::unfolded(at, incoming);
-        let (asked, mut mueller) = (drawn.unwrap_or(incoming), Mueller::NONE);
-        let value = value.unwrap_or_else(|| evaluated(at, asked.wi));
-        let exitant = Self::meet(at, asked, value, &mut mueller);
+        let (query, mut mueller) = (drawn.unwrap_or(incoming), Mueller::NONE);
+        let value = value.unwrap_or_else(|| bsdf_value(at, query.wi));
+        let exitant = Self::set_mueller(at, query, value, &mut mueller);
         if let Some(folded) = Self::folded_to(at, incoming) {
             let mut left = value;
-            after.pass(&mueller, &exitant, &mut left);
+            after.pass_surface(&mueller, &exitant, &mut left);
             let folded_light = self.folded_light(at, folded, [value, left], bsdf_cos);
-            after.take_in_besides(self, &folded_light, -wi, at.flat);
+            after.merge_folded(self, &folded_light, -wi, at.flat);
             return after;
         }
-        after.pass(&mueller, &exitant, bsdf_cos);
+        after.pass_surface(&mueller, &exitant, bsdf_cos);
         if drawn.is_some() {
             after.fold(at.flat);
         }
@@ -275,14 +275,14 @@ impl<const N: usize, const K: usize> Rows<N, K> {
 
     /// Returns the rows of light that is followed forward, beyond a surface that it leaves in one way to the viewer. If
     /// `is_folded`, it is folded before it arrives. Converts `share` from unpolarized light to the path's light.
-    fn sent(&self, at: &Interaction<N>, incoming: Incoming, is_folded: bool, share: &mut Lanes<N>) -> Self {
+    fn sent_forward(&self, at: &Interaction<N>, incoming: Incoming, is_folded: bool, share: &mut Lanes<N>) -> Self {
         let (mut after, mut mueller) = (*self, Mueller::NONE);
         if is_folded {
             after.fold(at.flat);
         }
-        let exitant = Self::meet(at, incoming, *share, &mut mueller).turned_back();
+        let exitant = Self::set_mueller(at, incoming, *share, &mut mueller).reversed();
         mueller.turn_back();
-        after.pass(&mueller, &exitant, share);
+        after.pass_surface(&mueller, &exitant, share);
         after
     }
 
@@ -291,14 +291,14 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         let turn = Rotation::new(z, self.x, light.x).unwrap_or(Rotation::NONE);
         for (i, weights) in self.weights.iter_mut().enumerate() {
             let ([s0, s1, s2, s3], [q0, q1, q2, q3]) = (light.stokes.map(|part| part[i]), *weights);
-            let [r1, r2] = turn.of(q1, q2);
+            let [r1, r2] = turn.apply(q1, q2);
             weights[0] = from_fn(|k| q0[k] * s0 + r1[k] * s1 + r2[k] * s2 + q3[k] * s3);
         }
         if self.compares {
             return Lanes::ONE;
         }
-        let taken = self.firsts();
-        (0..N).for_each(|i| self.set(i, self.weights[i], inverse(taken[i])));
+        let taken = self.first_weights();
+        (0..N).for_each(|i| self.set_lane(i, self.weights[i], inverse(taken[i])));
         Lanes::from_fn(|i| if taken[i] > 0.0 { taken[i] } else { 0.0 })
     }
 
@@ -309,16 +309,16 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     }
 
     /// Returns how much polarization changes light that is compared.
-    fn compared(&self, light: &FoundLight<N, Self>) -> f64 {
+    fn measured_change(&self, light: &FoundLight<N, Self>) -> f64 {
         if !self.compares {
             return 0.0;
         }
         let FoundLight { world, received, rgb, .. } = *light;
-        let lanes = &(*received.lanes * self.firsts());
+        let lanes = &(*received.lanes * self.first_weights());
         let exact = ReceivedLight { lanes, ..*received };
         let exact = match light.excitation {
             None => exact.rgb(&world.responses),
-            Some(dye) => dye.seen(world, &exact, |seen| seen.times(dye.polarization.firsts(), &world.responses)),
+            Some(dye) => dye.seen(world, &exact, |seen| seen.times(dye.polarization.first_weights(), &world.responses)),
         };
         world.amount(exact) - world.amount(rgb)
     }
@@ -329,32 +329,32 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
     type Stored = Option<Box<Column<N>>>;
     type RowTransfer = RowTransfer<N>;
 
-    fn of_camera(world: &World, ray: &Ray) -> Self {
+    fn at_camera(world: &World, ray: &Ray) -> Self {
         let camera = &world.scene.camera;
         let x = camera.image_right(ray.direction);
-        let mut rows = Self::starting(x, world.method.polarization == Polarizing::Compared);
+        let mut rows = Self::initial(x, world.method.polarization == Polarizing::Compared);
         if let Some(filter) = camera.filter() {
-            let (z, lanes) = (-ray.direction, Lanes::<N>::ONE.not_zero());
+            let (z, lanes) = (-ray.direction, Lanes::<N>::ONE.nonzero());
             let mut value = Lanes([filter.transmittance() as f32; N]);
             let (sin, cos) = libm::sincos(filter.angle);
             let axis = x * cos + z.cross(x) * sin;
             let mut mueller = Mueller::NONE;
             mueller.set_lanes(axis, lanes, |_| Block::of_polarizer(filter.extinction));
-            rows.pass(&mueller, &Exitant { value, lanes, z: [z; 2] }, &mut value);
+            rows.pass_surface(&mueller, &Exitant { value, lanes, z: [z; 2] }, &mut value);
         }
         rows
     }
 
-    fn of_light(world: &World, ray: &Ray) -> Self {
+    fn at_light(world: &World, ray: &Ray) -> Self {
         let x = Frame::about(ray.direction).to_world(DVec3::X);
-        Self::starting(x, world.method.polarization == Polarizing::Compared)
+        Self::initial(x, world.method.polarization == Polarizing::Compared)
     }
 
     fn through(mut self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self {
         let (mut mueller, mut share) = (Mueller::NONE, straight.share());
         material.mueller_of_straight(context, &mut mueller);
-        let exitant = Exitant { value: share, lanes: context.present.not_zero(), z: [context.wo; 2] };
-        self.pass(&mueller, &exitant, &mut share);
+        let exitant = Exitant { value: share, lanes: context.present.nonzero(), z: [context.wo; 2] };
+        self.pass_surface(&mueller, &exitant, &mut share);
         straight.panes = Lanes::from_fn(|i| (share[i] - straight.holes[i]).max(0.0));
         self
     }
@@ -363,22 +363,22 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         ways.clear();
         for branch in branches {
             let way = ways.add(RowTransfer::new);
-            way.is_any_left = !matches!(at.material, Material::Diffuse(_));
-            if !way.is_any_left {
-                way.change.x = across(branch.wi, self.x);
+            way.is_polarized = !matches!(at.material, Material::Diffuse(_));
+            if !way.is_polarized {
+                way.change.x = perpendicular(branch.wi, self.x);
                 continue;
             }
             let incoming = branch.incoming(&at.context.present);
             let drawn = Self::unfolded(at, incoming);
-            let asked = drawn.unwrap_or(incoming);
+            let query = drawn.unwrap_or(incoming);
             let value = match branch.pdf {
                 None => branch.share,
                 // Where lanes part, a branch's share is that of its own lanes, and its density that of all lanes.
                 Some(pdf) if at.flat == at.context.normal && !(at.parts && branch.crosses) => branch.share * pdf as f32,
-                Some(_) => evaluated(at, asked.wi),
+                Some(_) => bsdf_value(at, query.wi),
             };
-            let exitant = Self::meet(at, asked, value, &mut way.mueller);
-            way.folded_at = drawn.map(|_| at.flat);
+            let exitant = Self::set_mueller(at, query, value, &mut way.mueller);
+            way.fold_plane = drawn.map(|_| at.flat);
             way.folded_light = None;
             if let Some(folded) = Self::folded_to(at, incoming) {
                 let mut left = value;
@@ -392,45 +392,45 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
     }
 
     fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&RowTransfer<N>>) {
-        let Some(RowTransfer { is_any_left, mueller, change, folded_at, folded_light }) = way else {
+        let Some(RowTransfer { is_polarized, mueller, change, fold_plane, folded_light }) = way else {
             // The branch's share is already that of the path's light.
             let mut share = branch.share;
             *self = before.forward(&at.viewed_from(branch.wi), at.context.wo, &mut share);
             return;
         };
-        if !is_any_left {
-            return self.lose(before, change.x);
+        if !is_polarized {
+            return self.depolarize(before, change.x);
         }
-        self.go(before, mueller, change);
-        if let Some(flat) = folded_at {
+        self.transform(before, mueller, change);
+        if let Some(flat) = fold_plane {
             self.fold(*flat);
         }
         if let Some(folded_light) = folded_light {
-            self.take_in_besides(before, folded_light, -branch.wi, at.flat);
+            self.merge_folded(before, folded_light, -branch.wi, at.flat);
         }
     }
 
     fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
         let value = if at.flat == at.context.normal { Some(*bsdf_cos) } else { None };
-        self.after(at, wi, value, bsdf_cos)
+        self.after_surface(at, wi, value, bsdf_cos)
     }
 
-    fn moved(&self, _: &Interaction<N>, _: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64 {
-        on_its_way.compared(light)
+    fn change_along(&self, _: &Interaction<N>, _: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64 {
+        on_its_way.measured_change(light)
     }
 
-    fn moved_of_met(&self, light: &FoundLight<N, Self>) -> f64 {
-        self.compared(light)
+    fn change_of_hit(&self, light: &FoundLight<N, Self>) -> f64 {
+        self.measured_change(light)
     }
 
-    fn exciting(&self) -> Self {
-        Self::starting(self.x, self.compares)
+    fn for_excitation(&self) -> Self {
+        Self::initial(self.x, self.compares)
     }
 
-    fn lit_by(&self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Option<Self> {
+    fn lit_by(&self, light: &Light<Table>, wi: DVec3, emission: &mut Lanes<N>) -> Option<Self> {
         let (axis, degree) = light.polarization().and_then(|sky| sky.toward(wi))?;
         let (mut lit, stokes) = (*self, [1.0, degree as f32, 0.0, 0.0].map(|part| Lanes([part; N])));
-        *shone = *shone * lit.receive(-wi, &Column { x: axis, stokes });
+        *emission = *emission * lit.receive(-wi, &Column { x: axis, stokes });
         Some(lit)
     }
 
@@ -438,20 +438,20 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         let z = -viewed.context.wo;
         if let Material::Diffuse(_) = viewed.material {
             let mut after = *self;
-            after.lose(self, across(z, self.x));
+            after.depolarize(self, perpendicular(z, self.x));
             return after;
         }
-        let lanes = viewed.context.present.not_zero();
+        let lanes = viewed.context.present.nonzero();
         let incoming = Incoming { wi, crosses: wi.dot(viewed.flat) < 0.0, single: false, lanes };
         let drawn = Self::unfolded(viewed, incoming);
-        let asked = drawn.unwrap_or(incoming);
-        let value = evaluated(viewed, asked.wi);
+        let query = drawn.unwrap_or(incoming);
+        let value = bsdf_value(viewed, query.wi);
         let (mut left, mut others) = (value, [Lanes::ZERO; 2]);
-        let mut after = self.sent(viewed, asked, drawn.is_some(), &mut left);
+        let mut after = self.sent_forward(viewed, query, drawn.is_some(), &mut left);
         if let Some(folded) = Self::folded_to(viewed, incoming) {
-            others = [evaluated(viewed, folded.wi); 2];
-            let other = self.sent(viewed, folded, true, &mut others[1]);
-            after.take_in(&other, z, &[left, others[1]]);
+            others = [bsdf_value(viewed, folded.wi); 2];
+            let other = self.sent_forward(viewed, folded, true, &mut others[1]);
+            after.merge(&other, z, &[left, others[1]]);
         }
         if !self.compares {
             *bsdf_cos = Lanes::from_fn(|i| bsdf_cos[i] * (left[i] + others[1][i]) * inverse(value[i] + others[0][i]));
@@ -460,15 +460,15 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
     }
 
     fn seen(&self, _: &Interaction<N>, _: &ScatterContext<N>, light: &Self, world: &World, ray: &Ray) -> SeenPhoton<N> {
-        let mut after = Self::of_camera(world, ray);
+        let mut after = Self::at_camera(world, ray);
         let factor = after.receive(-ray.direction, &light.column());
-        let change = if self.compares { after.firsts() + Lanes([-1.0; N]) } else { Lanes::ZERO };
+        let change = if self.compares { after.first_weights() + Lanes([-1.0; N]) } else { Lanes::ZERO };
         SeenPhoton { change, factor: Some(factor), stokes: after.stokes() }
     }
 
-    fn landed(&self, at: &Interaction<N>) -> Self::Stored {
-        let is_of_no_use = matches!(at.material, Material::Diffuse(_)) && !self.compares;
-        (!is_of_no_use).then(|| Box::new(self.column()))
+    fn to_stored(&self, at: &Interaction<N>) -> Self::Stored {
+        let is_unneeded = matches!(at.material, Material::Diffuse(_)) && !self.compares;
+        (!is_unneeded).then(|| Box::new(self.column()))
     }
 
     fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Stored, bsdf_cos: &mut Lanes<N>) -> Self {
@@ -481,10 +481,10 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
 
     fn change_of_joined(&self, _: &Interaction<N>, _: DVec3, _: &Self::Stored, joined: &Self, lanes: Lanes<N>) -> f64 {
         let all = f64::from(lanes.sum());
-        if self.compares && all > 0.0 { f64::from((lanes * joined.firsts()).sum()) / all - 1.0 } else { 0.0 }
+        if self.compares && all > 0.0 { f64::from((lanes * joined.first_weights()).sum()) / all - 1.0 } else { 0.0 }
     }
 
-    fn read_stored(photon: &Self::Stored, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Stored {
+    fn convert_stored(photon: &Self::Stored, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Stored {
         photon.as_ref().map(|column| Box::new(Column { x: column.x, stokes: column.stokes.map(read) }))
     }
 

@@ -14,32 +14,32 @@ use crate::spectrum::{Lanes, Table};
 
 /// Returns the triangle's normal and the bent shading normal, both on the side of the unit vector `wo` to the viewer.
 pub fn normals(point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
-    let [flat, smooth] = plain_normals(point, wo);
-    if flat == smooth { [flat; 2] } else { [flat, bent(wo, flat, smooth)] }
+    let [flat, smooth] = unbent_normals(point, wo);
+    if flat == smooth { [flat; 2] } else { [flat, bent_normal(wo, flat, smooth)] }
 }
 
 /// Returns both normals for a material with some lobes. What is matte looks the same to every viewer, so its shading
 /// normal is not bent.
-pub fn normals_of(lobes: Lobes, point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
-    if lobes == Lobes::DIFFUSE_REFLECTION { plain_normals(point, wo) } else { normals(point, wo) }
+pub fn normals_for_lobes(lobes: Lobes, point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
+    if lobes == Lobes::DIFFUSE_REFLECTION { unbent_normals(point, wo) } else { normals(point, wo) }
 }
 
-fn plain_normals(point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
+fn unbent_normals(point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
     let is_front = point.normal.dot(wo) > 0.0;
     [point.normal, point.shading].map(|normal| if is_front { normal } else { -normal })
 }
 
 /// Returns the unbent shading normal, on the side of the unit vector `wo`.
-pub fn plain_normal(point: &SurfacePoint, wo: DVec3) -> DVec3 {
-    plain_normals(point, wo)[1]
+pub fn unbent_normal(point: &SurfacePoint, wo: DVec3) -> DVec3 {
+    unbent_normals(point, wo)[1]
 }
 
 /// Returns whether light goes from `wi` to the viewer at `wo` by the unbent normal, and so can be followed either way.
-pub fn is_plain(point: &SurfacePoint, wo: DVec3, wi: DVec3, crosses: bool) -> bool {
+pub fn is_reversible(point: &SurfacePoint, wo: DVec3, wi: DVec3, crosses: bool) -> bool {
     if point.shading == point.normal {
         return true;
     }
-    let smooth = plain_normal(point, wo);
+    let smooth = unbent_normal(point, wo);
     let (wo_above, wi_above) = (wo.dot(point.normal), wi.dot(point.normal));
     let mirrored = reflect(wo, smooth).dot(point.normal);
     wo.dot(smooth) > 0.0 && mirrored * wo_above > 0.0 && crosses == (wi_above * wo_above < 0.0)
@@ -56,13 +56,13 @@ pub fn forward_factor(point: &SurfacePoint, wo: DVec3, wi: DVec3) -> f64 {
 }
 
 /// Returns the shading normal or, if that would mirror `wo` below the triangle, the one that mirrors it as far above.
-fn bent(wo: DVec3, flat: DVec3, smooth: DVec3) -> DVec3 {
+fn bent_normal(wo: DVec3, flat: DVec3, smooth: DVec3) -> DVec3 {
     let mirrored = reflect(wo, smooth);
-    if mirrored.dot(flat) > 0.0 { smooth } else { unit(wo + folded(mirrored, flat)) }
+    if mirrored.dot(flat) > 0.0 { smooth } else { unit(wo + folded_direction(mirrored, flat)) }
 }
 
 /// Returns the mirror image of a direction in the triangle's plane.
-pub fn folded(direction: DVec3, flat: DVec3) -> DVec3 {
+pub fn folded_direction(direction: DVec3, flat: DVec3) -> DVec3 {
     unit(direction - flat * (2.0 * direction.dot(flat)))
 }
 
@@ -80,7 +80,7 @@ pub fn scatter<const N: usize>(
     }
     for branch in branches {
         if branch.crosses != (branch.wi.dot(flat) < 0.0) {
-            branch.wi = folded(branch.wi, flat);
+            branch.wi = folded_direction(branch.wi, flat);
         }
         if branch.pdf.is_some() {
             branch.pdf = Some(evaluate(material, context, flat, branch.wi).map_or(0.0, |(_, pdf)| pdf));
@@ -100,11 +100,11 @@ pub fn evaluate<const N: usize>(
     }
     // A direction is folded where the two normals put it on different sides.
     let above = wi.dot(flat) > 0.0;
-    let from = |drawn: DVec3| match (drawn.dot(context.normal) > 0.0) == above {
+    let evaluate_drawn = |drawn: DVec3| match (drawn.dot(context.normal) > 0.0) == above {
         true => material.evaluate(context, drawn),
         false => None,
     };
-    match (from(wi), from(folded(wi, flat))) {
+    match (evaluate_drawn(wi), evaluate_drawn(folded_direction(wi, flat))) {
         (Some((a, p)), Some((b, q))) => Some((a + b, p + q)),
         (a, b) => a.or(b),
     }

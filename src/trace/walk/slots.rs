@@ -39,7 +39,7 @@ impl<T> Slots<T> {
     }
 
     /// Keeps only the entries whose numbers `is_kept` accepts.
-    pub fn keep(&mut self, is_kept: impl Fn(usize) -> bool) {
+    pub fn retain(&mut self, is_kept: impl Fn(usize) -> bool) {
         let mut number = 0;
         self.spare.extend(self.entries.extract_if(.., |_| {
             number += 1;
@@ -57,12 +57,12 @@ mod tests {
     use super::Slots;
 
     #[test]
-    fn entries_are_filled_in_the_place_of_those_that_are_gone() {
+    fn new_entries_reuse_the_memory_of_removed_ones() {
         let mut slots = Slots::new();
         for number in 1..=3 {
             *slots.add(|| 0) = number;
         }
-        slots.keep(|number| number != 1);
+        slots.retain(|number| number != 1);
         assert_eq!([slots.get(0), slots.get(1), slots.get(2)], [Some(&1), Some(&3), None]);
         let entry = slots.take().expect("two are left");
         assert_eq!((*entry, *slots.add(|| 7)), (3, 2));

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::interaction::{SurfaceHit, context};
-use super::path::{Among, Path};
+use super::path::{ObjectSet, Path};
 use super::polarization::{PassThrough, Polarization};
 use super::polarized::Polarized;
 use super::shading;
@@ -19,7 +19,7 @@ const COVER: u32 = 4;
 /// Returns the part of a path's light that passes through a see-through surface; `None` if nothing does.
 #[cold]
 #[inline(never)]
-pub fn straight_on<const N: usize, P: Polarization<N>>(
+pub fn pass_through_of_path<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
     path: &Path<N, P>,
@@ -27,7 +27,7 @@ pub fn straight_on<const N: usize, P: Polarization<N>>(
 ) -> Option<PassThrough<N, P>> {
     let present = path.throughput.present();
     let straight_ray = StraightRay { ray: &path.ray, surface_hit, present, inside: path.media.inside(&world.scene) };
-    let pass_through = straight_at(world, draw, &straight_ray, path.polarization)?;
+    let pass_through = pass_through_of_ray(world, draw, &straight_ray, path.polarization)?;
     (!(pass_through.straight.share() * present).is_zero()).then_some(pass_through)
 }
 
@@ -43,7 +43,7 @@ pub fn holes<const N: usize>(
         return Lanes::ZERO;
     }
     let straight_ray = StraightRay { ray, surface_hit, present: draw.start(), inside };
-    straight_at(world, draw, &straight_ray, Polarized::NOT)
+    pass_through_of_ray(world, draw, &straight_ray, Polarized::NONE)
         .map_or(Lanes::ZERO, |pass_through| pass_through.straight.holes)
 }
 
@@ -71,14 +71,14 @@ pub fn hit<const N: usize, P: Polarization<N>>(
     };
     let u = match world.method.transport {
         Transport::Deterministic { .. } => 0.5,
-        Transport::Random { .. } => sampler.four_plain(path.key, COVER)[0],
+        Transport::Random { .. } => sampler.get_random_4d(path.key, COVER)[0],
     };
     let shares = draw.shares(path.parted);
-    let part = |of: Lanes<N>| path.throughput.through(of).weight(shares) / path.throughput.weight(shares);
-    let holes = part(straight.holes);
+    let share_of = |of: Lanes<N>| path.throughput.through(of).weight(shares) / path.throughput.weight(shares);
+    let holes = share_of(straight.holes);
     match holes <= u {
         true => Cutout { is_hit: true, chance: 1.0 - holes, weight: 1.0 - holes },
-        false => Cutout { is_hit: false, chance: holes, weight: part(straight.share()) },
+        false => Cutout { is_hit: false, chance: holes, weight: share_of(straight.share()) },
     }
 }
 
@@ -101,7 +101,7 @@ pub struct VisibilityTest<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Occluders {
     /// Objects that exist for a path.
-    Objects(Among),
+    Objects(ObjectSet),
     /// Objects that the camera sees, if the segment leads to it.
     Seen(SeenThrough),
 }
@@ -118,14 +118,14 @@ pub enum SeenThrough {
 
 impl Occluders {
     fn is_all(self, world: &World) -> bool {
-        self == Self::Objects(Among::All) || !world.hides_objects
+        self == Self::Objects(ObjectSet::All) || !world.hides_objects
     }
 
     fn has(self, world: &World, object: u32) -> bool {
         match self {
             _ if !world.hides_objects => true,
-            Self::Objects(Among::All) => true,
-            Self::Objects(Among::Plate) => world.scene.is_of_plate(object),
+            Self::Objects(ObjectSet::All) => true,
+            Self::Objects(ObjectSet::Plate) => world.scene.is_of_plate(object),
             Self::Seen(_) => world.scene.is_seen(object),
         }
     }
@@ -135,7 +135,7 @@ impl VisibilityTest<'_> {
     /// Returns the light that arrives through holes, panes and the medium, and its polarization beyond them; `None` if
     /// something occludes it. `polarization`, of the path at the place, and `light` are only called if nothing does.
     #[inline]
-    pub fn arriving<const N: usize, P: Polarization<N>>(
+    pub fn arriving_light<const N: usize, P: Polarization<N>>(
         &self,
         world: &World,
         draw: &Draw<N>,
@@ -145,8 +145,8 @@ impl VisibilityTest<'_> {
         let Self { ray, distance, ends, inside, occluders, last_occluder } = *self;
         let (mut arriving, after);
         if !occluders.is_all(world) || world.has_see_through() {
-            let closed = |object| !world.is_see_through(object) && occluders.has(world, object);
-            if world.scene.is_occluded_by(ray, distance, ends, last_occluder, &closed) {
+            let is_opaque = |object| !world.is_see_through(object) && occluders.has(world, object);
+            if world.scene.is_occluded_by(ray, distance, ends, last_occluder, &is_opaque) {
                 return None;
             }
             let (share, beyond) = self.transmittance(world, draw, polarization())?;
@@ -172,14 +172,14 @@ impl VisibilityTest<'_> {
         draw: &Draw<N>,
         mut polarization: P,
     ) -> Option<(Lanes<N>, P)> {
-        let (mut ray, mut left) = (*self.ray, self.distance);
+        let (mut ray, mut remaining) = (*self.ray, self.distance);
         let (mut all, mut by_holes, mut by_panes) = (Lanes::ONE, Lanes::ONE, Lanes::ZERO);
-        let counts = |object: u32| world.is_see_through(object) && self.occluders.has(world, object);
-        while let Some(hit) = world.scene.nearest(&ray, left, &counts) {
+        let may_attenuate = |object: u32| world.is_see_through(object) && self.occluders.has(world, object);
+        while let Some(hit) = world.scene.nearest(&ray, remaining, &may_attenuate) {
             let surface_hit = SurfaceHit::new(world, &ray, hit);
             let straight_ray =
                 StraightRay { ray: &ray, surface_hit: &surface_hit, present: Lanes::ONE, inside: self.inside };
-            let pass_through = straight_at(world, draw, &straight_ray, polarization)?;
+            let pass_through = pass_through_of_ray(world, draw, &straight_ray, polarization)?;
             let share = pass_through.straight.share();
             // The last surface is the first one that the camera sees. Behind a holdout it sees only what holes show,
             // and a surface that lets all light through does not exist for it.
@@ -194,7 +194,7 @@ impl VisibilityTest<'_> {
             if all.is_zero() {
                 return None;
             }
-            left -= hit.intersection.t;
+            remaining -= hit.intersection.t;
             ray = surface_hit.point.leave(ray.direction);
         }
         let share = match self.occluders {
@@ -217,7 +217,7 @@ struct StraightRay<'a, const N: usize> {
 }
 
 /// Returns what a material lets pass through where a ray hits it, for all kinds of rays.
-fn straight_at<const N: usize, P: Polarization<N>>(
+fn pass_through_of_ray<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
     straight_ray: &StraightRay<N>,

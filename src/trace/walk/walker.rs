@@ -4,10 +4,10 @@ use std::cell::Cell;
 
 use super::audit::Audit;
 use super::interaction::{Interaction, SurfaceHit};
-use super::path::{Among, Path, PathKind, ScatterSample};
+use super::path::{ObjectSet, Path, PathKind, ScatterSample};
 use super::polarization::{PassThrough, Polarization};
 use super::polarized::Polarized;
-use super::roulette::{LONG, survival};
+use super::roulette::{LONG_PATH, play_roulette};
 use super::slots::Slots;
 use super::{shading, straight};
 use crate::material::{Branch, Lobes, Straight};
@@ -33,7 +33,7 @@ pub struct Walker<'a, const N: usize, P: Polarization<N> = Polarized> {
     /// The audit of where all weight ends, if it is requested.
     pub audit: Option<Audit<'a, N>>,
     /// Number of rays that were followed before this camera sample.
-    pub started: u64,
+    pub rays_before: u64,
 }
 
 /// Use of the random numbers that choose a branch or end a path.
@@ -41,10 +41,10 @@ const CHOICE: u32 = 2;
 
 /// How much sooner roulette ends paths that leave a diffuse surface than those that leave a smooth one: what they still
 /// gather varies little. Measured on the smallpt scene, where 1 takes 1.17 times as long to the same error.
-const SOONER: f64 = 5.0;
+const DIFFUSE_ROULETTE_FACTOR: f64 = 5.0;
 
 /// How a sample continues that has hit too many surfaces: by all bright branches, and by one of the faint ones.
-const BY_CHANCE: Transport = Transport::Random { split: 0.01, roulette: 0.01 };
+const FALLBACK_TRANSPORT: Transport = Transport::Random { split: 0.01, roulette: 0.01 };
 
 impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     pub fn new(world: &'a World, transport: Transport) -> Self {
@@ -57,7 +57,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             last_occluder: Cell::new(None),
             stats: Stats::default(),
             audit: None,
-            started: 0,
+            rays_before: 0,
         }
     }
 
@@ -65,15 +65,15 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     #[inline(always)]
     pub fn next_hit(&mut self, path: &mut Path<N, P>, draw: &Draw<N>) -> Option<SurfaceHit> {
         self.stats.rays += 1;
-        let is_past_hidden = self.world.hides_objects && path.kind.is_from_camera() && path.among == Among::All;
-        let hit = match path.among {
-            Among::All if is_past_hidden => self.world.scene.intersect_seen(&path.ray, path.left),
-            Among::All => self.world.scene.intersect_from(&path.ray, path.left),
-            Among::Plate => self.world.scene.intersect_plate(&path.ray, path.left, path.kind.is_from_camera()),
+        let skips_hidden = self.world.hides_objects && path.kind.is_from_camera() && path.object_set == ObjectSet::All;
+        let hit = match path.object_set {
+            ObjectSet::All if skips_hidden => self.world.scene.intersect_seen(&path.ray, path.left),
+            ObjectSet::All => self.world.scene.intersect_from(&path.ray, path.left),
+            ObjectSet::Plate => self.world.scene.intersect_plate(&path.ray, path.left, path.kind.is_from_camera()),
         };
-        let is_past_media = is_past_hidden && self.world.has_media;
-        if is_past_media && path.left.is_some() {
-            path.enter(self.world, draw, self.world.media_seen_at(path.ray.origin));
+        let skips_hidden_media = skips_hidden && self.world.has_media;
+        if skips_hidden_media && path.left.is_some() {
+            path.switch_media(self.world, draw, self.world.media_seen_at(path.ray.origin));
         }
         let before = path.throughput;
         path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.intersection.t));
@@ -81,8 +81,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             audit.absorb(path, before, draw);
         }
         let hit = hit?;
-        if is_past_media {
-            path.enter(self.world, draw, path.media.and(&self.world.media_hidden_at(&path.ray, &hit)));
+        if skips_hidden_media {
+            path.switch_media(self.world, draw, path.media.combined_with(&self.world.media_hidden_at(&path.ray, &hit)));
         }
         path.left = Some(hit.primitive());
         Some(SurfaceHit::new(self.world, &path.ray, hit))
@@ -92,26 +92,26 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     #[inline(always)]
     pub fn straight(&self, path: &Path<N, P>, draw: &Draw<N>, surface_hit: &SurfaceHit) -> Option<PassThrough<N, P>> {
         let lets_through = self.world.is_see_through(surface_hit.hit.object);
-        if lets_through { straight::straight_on(self.world, draw, path, surface_hit) } else { None }
+        if lets_through { straight::pass_through_of_path(self.world, draw, path, surface_hit) } else { None }
     }
 
     /// Returns the media at the surface that a path has hit.
     ///
     /// # Errors
-    /// [`Hidden`] if the surface is that of a body hidden inside another of higher priority.
+    /// [`HiddenHit`] if the surface is that of a body hidden inside another of higher priority.
     #[inline(always)]
-    pub fn boundary(&mut self, path: &Path<N, P>, surface_hit: &SurfaceHit) -> Result<Boundary, Hidden> {
+    pub fn boundary(&mut self, path: &Path<N, P>, surface_hit: &SurfaceHit) -> Result<Boundary, HiddenHit> {
         let SurfaceHit { hit, point } = surface_hit;
         let number = self.world.scene.objects[hit.object as usize].material;
         let (boundary, fits) = path.media.at_surface(&self.world.scene, number, point, path.ray.direction);
         self.stats.unmatched += u64::from(!fits);
         let is_hidden = boundary.here == boundary.beyond && self.world.scene.material_of(hit.object).medium().is_some();
-        if is_hidden { Err(Hidden(boundary)) } else { Ok(boundary) }
+        if is_hidden { Err(HiddenHit(boundary)) } else { Ok(boundary) }
     }
 
     /// Adds the pending path that goes on through a hidden surface as if nothing were there.
     #[cold]
-    pub fn pass_hidden(&mut self, path: &Path<N, P>, surface_hit: &SurfaceHit, Hidden(boundary): &Hidden) {
+    pub fn pass_hidden(&mut self, path: &Path<N, P>, surface_hit: &SurfaceHit, HiddenHit(boundary): &HiddenHit) {
         let kind = path.kind.past_hidden();
         let left_to_photons =
             kind == PathKind::Smooth && self.world.is_photon_target(surface_hit.hit.object, surface_hit.point.position);
@@ -120,13 +120,13 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         let (key, media) = (path.key.child(0), path.media.beyond(boundary));
         *next = Path { scatter: None, key, media, kind, left_to_photons, ..*path };
         next.ray = surface_hit.point.leave(path.ray.direction);
-        (next.vertices, next.hidden) = (path.vertices + 1, path.hidden + 1);
+        (next.vertices, next.hidden_vertices) = (path.vertices + 1, path.hidden_vertices + 1);
     }
 
     /// Adds the pending path that passes through a surface, if any light does.
-    pub fn pass_in_part(&mut self, path: &Path<N, P>, point: &SurfacePoint, through: Option<&PassThrough<N, P>>) {
+    pub fn pass_partly(&mut self, path: &Path<N, P>, point: &SurfacePoint, through: Option<&PassThrough<N, P>>) {
         if let Some(through) = through {
-            *self.pending.add(|| *path) = Path { key: path.key.child(0), ..path.passed_in_part(point, through) };
+            *self.pending.add(|| *path) = Path { key: path.key.child(0), ..path.transmitted_part(point, through) };
         }
     }
 
@@ -145,48 +145,48 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     }
 
     /// Keeps only the branches of smooth surfaces: diffuse surfaces may send on no more light.
-    pub fn keep_single(&mut self, departure: &OutgoingPath<N, P>) {
+    pub fn keep_delta_branches(&mut self, outgoing: &OutgoingPath<N, P>) {
         let wide = self.branches.iter().filter(|branch| branch.pdf.is_some());
-        let left_out = |branch: &Branch<N>| departure.weight(branch) * f64::from(departure.aimed(branch));
-        self.stats.stopped += wide.map(left_out).sum::<f64>() / departure.siblings();
-        self.ways.keep(|number| self.branches[number].pdf.is_none());
+        let left_out = |branch: &Branch<N>| outgoing.weight(branch) * f64::from(outgoing.aiming_factor(branch));
+        self.stats.stopped += wide.map(left_out).sum::<f64>() / outgoing.siblings();
+        self.ways.retain(|number| self.branches[number].pdf.is_none());
         self.branches.retain(|branch| branch.pdf.is_none());
     }
 
     /// Reports the branches and what passes through to the audit, if there is one.
-    pub fn account(&mut self, path: &Path<N, P>, at: &Interaction<N>, straight: Option<&Straight<N>>) {
+    pub fn report_to_audit(&mut self, path: &Path<N, P>, at: &Interaction<N>, straight: Option<&Straight<N>>) {
         if let Some(audit) = &mut self.audit {
             audit.split(path, at, &self.branches, straight);
         }
     }
 
     /// Decides which branches, and how much of what passes through, are followed. Their paths become pending.
-    pub fn follow(&mut self, departure: &mut OutgoingPath<N, P>, sampler: &Sampler) {
-        let path = departure.path;
-        if let Some(through) = &departure.through {
+    pub fn follow(&mut self, outgoing: &mut OutgoingPath<N, P>, sampler: &Sampler) {
+        let path = outgoing.path;
+        if let Some(through) = &outgoing.through {
             self.branches.push(Branch::through(&path.ray, &through.straight));
         }
         self.stats.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
-        departure.branches = self.branches.len();
-        if departure.is_awaited
+        outgoing.branches = self.branches.len();
+        if outgoing.must_pass
             && let Some(through) = self.branches.pop()
         {
-            departure.send(self.branches.len(), &through, None, 1.0, &mut self.pending);
+            outgoing.add_pending(self.branches.len(), &through, None, 1.0, &mut self.pending);
         }
-        match self.rule() {
+        match self.current_transport() {
             Transport::Deterministic { cutoff, .. } => {
                 for (number, branch) in self.branches.iter().enumerate() {
-                    match departure.weight(branch) {
+                    match outgoing.weight(branch) {
                         weight if weight < cutoff => self.stats.dropped += weight,
-                        _ => departure.send(number, branch, self.ways.get(number), 1.0, &mut self.pending),
+                        _ => outgoing.add_pending(number, branch, self.ways.get(number), 1.0, &mut self.pending),
                     }
                 }
             }
             Transport::Random { roulette, .. } => {
-                if self.branches.len() > 1 && !self.follows_all(path, departure.at.context.draw) {
-                    self.choose(departure, sampler, roulette)
+                if self.branches.len() > 1 && !self.follows_all(path, outgoing.at.context.draw) {
+                    self.follow_one(outgoing, sampler, roulette)
                 } else {
-                    self.follow_many(departure, sampler, roulette)
+                    self.follow_many(outgoing, sampler, roulette)
                 }
             }
         }
@@ -194,15 +194,15 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
 
     /// Returns whether a path with several branches follows all of them, or only one.
     pub fn follows_all(&self, path: &Path<N, P>, draw: &Draw<N>) -> bool {
-        match self.rule() {
+        match self.current_transport() {
             Transport::Deterministic { .. } => true,
-            Transport::Random { split, .. } => path.vertices < LONG && path.weight(draw) > split,
+            Transport::Random { split, .. } => path.vertices < LONG_PATH && path.weight(draw) > split,
         }
     }
 
-    fn choose(&mut self, departure: &OutgoingPath<N, P>, sampler: &Sampler, roulette: f64) {
-        let weight = |number: usize| departure.weight(&self.branches[number]);
-        let u = sampler.four_plain(departure.path.key, CHOICE);
+    fn follow_one(&mut self, outgoing: &OutgoingPath<N, P>, sampler: &Sampler, roulette: f64) {
+        let weight = |number: usize| outgoing.weight(&self.branches[number]);
+        let u = sampler.get_random_4d(outgoing.path.key, CHOICE);
         let total: f64 = (0..self.branches.len()).map(weight).sum();
         let mut left = u[0] * total;
         let mut bright = (0..self.branches.len()).filter(|&number| weight(number) != 0.0);
@@ -212,47 +212,47 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             left < 0.0
         });
         let number = chosen.unwrap_or(last);
-        if let Some(factor) = survival(total, roulette, departure.path.vertices, || u[1]) {
+        if let Some(factor) = play_roulette(total, roulette, outgoing.path.vertices, || u[1]) {
             let factor = factor * total / weight(number);
             let (branch, way) = (&self.branches[number], self.ways.get(number));
-            departure.send(number, branch, way, factor, &mut self.pending);
+            outgoing.add_pending(number, branch, way, factor, &mut self.pending);
         }
     }
 
     /// Follows all branches that survive roulette.
-    fn follow_many(&mut self, departure: &OutgoingPath<N, P>, sampler: &Sampler, roulette: f64) {
-        let is_diffuse = departure.at.lobes.is_diffuse();
-        let is_seen = departure.is_seen && self.world.has_soft_light;
+    fn follow_many(&mut self, outgoing: &OutgoingPath<N, P>, sampler: &Sampler, roulette: f64) {
+        let is_diffuse = outgoing.at.lobes.is_diffuse();
+        let is_seen = outgoing.is_seen && self.world.has_soft_light;
         for (number, branch) in self.branches.iter().enumerate() {
-            let u = || sampler.four_plain(departure.path.key.child(number), CHOICE)[2];
-            let (weight, wide) = (departure.weight(branch), branch.pdf.is_some() && is_diffuse);
-            let roulette = if wide { roulette * SOONER } else { roulette };
+            let u = || sampler.get_random_4d(outgoing.path.key.child(number), CHOICE)[2];
+            let (weight, wide) = (outgoing.weight(branch), branch.pdf.is_some() && is_diffuse);
+            let roulette = if wide { roulette * DIFFUSE_ROULETTE_FACTOR } else { roulette };
             // In soft light, dark surfaces make pixels as dark as paths. These must be no noisier than bright ones.
-            let counted = if wide && is_seen { departure.path.weight(departure.at.context.draw) } else { weight };
+            let roulette_weight = if wide && is_seen { outgoing.path.weight(outgoing.at.context.draw) } else { weight };
             if weight != 0.0
-                && let Some(factor) = survival(counted, roulette, departure.path.vertices, u)
+                && let Some(factor) = play_roulette(roulette_weight, roulette, outgoing.path.vertices, u)
             {
-                departure.send(number, branch, self.ways.get(number), factor, &mut self.pending);
+                outgoing.add_pending(number, branch, self.ways.get(number), factor, &mut self.pending);
             }
         }
     }
 
     /// Returns how branches are followed at this point of the sample. If light has too many ways, one is chosen, which
     /// keeps the mean.
-    fn rule(&self) -> Transport {
+    fn current_transport(&self) -> Transport {
         match self.transport {
-            Transport::Deterministic { most, .. } if self.surfaces() > most => BY_CHANCE,
-            asked => asked,
+            Transport::Deterministic { most, .. } if self.surfaces() > most => FALLBACK_TRANSPORT,
+            transport => transport,
         }
     }
 
     pub fn surfaces(&self) -> u64 {
-        self.stats.rays - self.started
+        self.stats.rays - self.rays_before
     }
 }
 
 /// The surface of a body hidden inside another of higher priority, and the effect of crossing it.
-pub struct Hidden(Boundary);
+pub struct HiddenHit(Boundary);
 
 /// A path that leaves a surface.
 pub struct OutgoingPath<'a, const N: usize, P = Polarized> {
@@ -264,11 +264,11 @@ pub struct OutgoingPath<'a, const N: usize, P = Polarized> {
     /// What passes through the surface, as the last branch.
     pub through: Option<&'a PassThrough<N, P>>,
     /// Whether what passes through is always followed, because the camera ray hits something behind the surface.
-    pub is_awaited: bool,
+    pub must_pass: bool,
     /// Whether the camera sees the surface.
     pub is_seen: bool,
     /// Whether all branches count as leaving a diffuse surface, and not only the wide ones.
-    pub all_count: bool,
+    pub all_diffuse: bool,
     /// Number of branches, once they are followed.
     pub branches: usize,
 }
@@ -276,7 +276,7 @@ pub struct OutgoingPath<'a, const N: usize, P = Polarized> {
 impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
     pub fn new(world: &'a World, path: &'a Path<N, P>, at: &'a Interaction<'a, N>) -> Self {
         let (scatter, through) = (None, None);
-        Self { world, path, at, scatter, through, is_awaited: false, is_seen: false, all_count: false, branches: 0 }
+        Self { world, path, at, scatter, through, must_pass: false, is_seen: false, all_diffuse: false, branches: 0 }
     }
 
     /// Returns how many paths together stand for this one.
@@ -293,8 +293,8 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
     }
 
     /// Returns the factor of the densities of aimed bounces on the throughput: `eta_scale` if a branch does not cross.
-    fn aimed(&self, branch: &Branch<N>) -> f32 {
-        if branch.crosses { self.path.aimed } else { self.path.aimed * branch.eta_scale as f32 }
+    fn aiming_factor(&self, branch: &Branch<N>) -> f32 {
+        if branch.crosses { self.path.aiming_factor } else { self.path.aiming_factor * branch.eta_scale as f32 }
     }
 
     /// Adds the pending path along a branch, which is followed with probability 1 / `factor`. `way` is how its
@@ -302,7 +302,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
     ///
     /// Paths are large, so it is built in place.
     #[inline(always)]
-    fn send(
+    fn add_pending(
         &self,
         number: usize,
         branch: &Branch<N>,
@@ -312,50 +312,50 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
     ) {
         let Self { world, path, at, .. } = self;
         if let Some(through) = self.through.filter(|_| number + 1 == self.branches) {
-            let beyond = path.passed_in_part(at.point, through);
+            let beyond = path.transmitted_part(at.point, through);
             let (throughput, key) = (beyond.throughput.scaled(factor), path.key.child(number));
             *pending.add(|| beyond) = Path { throughput, key, ..beyond };
             return;
         }
         let (wide, crosses) = (branch.pdf.is_some(), branch.crosses);
-        let followed = || shading::is_plain(at.point, at.context.wo, branch.wi, crosses);
+        let reversible = || shading::is_reversible(at.point, at.context.wo, branch.wi, crosses);
         let left_to_photons = wide && path.leaves_narrow_to_photons(world, at);
-        let goes_on_smoothly = left_to_photons && at.lobes.is_narrow();
+        let counts_as_smooth = left_to_photons && at.lobes.is_narrow();
         // A photon that leaves by the lobe that is left to photons has hit only smooth surfaces so far.
-        let lands = wide && at.context.lobes != Lobes::NARROW;
+        let counts_as_wide = wide && at.context.lobes != Lobes::NARROW;
         let next = pending.add(|| **path);
         next.ray = at.point.leave(branch.wi);
         next.left = path.left;
         next.throughput = path.throughput.through(branch.share).scaled(factor);
-        (next.eta_scale, next.aimed) = (path.eta_scale * branch.eta_scale, self.aimed(branch));
+        (next.eta_scale, next.aiming_factor) = (path.eta_scale * branch.eta_scale, self.aiming_factor(branch));
         next.media = if crosses { path.media.beyond(&at.boundary) } else { path.media };
         next.parted = path.parted || (at.parts && crosses);
         next.key = path.key.child(number);
-        (next.vertices, next.hidden) = (path.vertices, path.hidden);
+        (next.vertices, next.hidden_vertices) = (path.vertices, path.hidden_vertices);
         next.length = path.length;
-        next.kind = match goes_on_smoothly {
+        next.kind = match counts_as_smooth {
             true => PathKind::Smooth,
-            false => path.kind.then(world.has_map(), lands, followed),
+            false => path.kind.after_bounce(world.has_map(), counts_as_wide, reversible),
         };
         next.left_to_photons = match wide {
             true => left_to_photons,
             false => next.kind == PathKind::Smooth && world.is_photon_target(at.object, at.point.position),
         };
-        next.is_narrow = match wide && !goes_on_smoothly {
+        next.is_narrow = match wide && !counts_as_smooth {
             true => at.lobes.intersection(at.context.lobes).is_narrow(),
             false => path.is_narrow,
         };
-        next.diffuse_left = path.diffuse_left - u32::from((wide || self.all_count) && at.lobes.is_diffuse());
-        next.scatter = branch.pdf.and_then(|pdf| self.scatter.map(|scatter| scatter.toward(pdf, crosses)));
+        next.diffuse_left = path.diffuse_left - u32::from((wide || self.all_diffuse) && at.lobes.is_diffuse());
+        next.scatter = branch.pdf.and_then(|pdf| self.scatter.map(|scatter| scatter.with_pdf(pdf, crosses)));
         next.polarization.become_along(&path.polarization, at, branch, way);
         next.bounces = path.bounces + 1;
         next.is_seen = path.is_seen && !wide && !at.lobes.is_wide();
-        next.among = path.among;
+        next.object_set = path.object_set;
         next.resampled = path.resampled;
-        next.unlit = path.unlit;
+        next.ignores_light = path.ignores_light;
         next.excitation = path.excitation;
         next.first = match path.bounces {
-            0 if !wide && !crosses && world.layers.lobes_apart => Some(FirstLobe::Specular),
+            0 if !wide && !crosses && world.layers.separates_lobes => Some(FirstLobe::Specular),
             _ => path.first_lobe(world, at, branch.wi, crosses),
         };
     }

@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 
 use abbe::math::DVec3;
 
-use super::{BANDS, Case, assert_closed_forms, by_quad, case, lamp};
+use super::{BANDS, Case, assert_closed_forms, case, lamp, quad_irradiance};
 use crate::support::scenes::quad;
 
 /// Returns cases of one-sided lamps, a sky beside a lamp, and more lights than are all sampled.
@@ -25,7 +25,7 @@ fn combined_lights() -> Vec<Case> {
         .collect();
     let quads: Vec<String> = ring.iter().map(|&(center, u, v)| quad(center, u, v)).collect();
     let quads: Vec<&str> = quads.iter().map(String::as_str).collect();
-    let by_ring: f64 = ring.iter().map(|&(c, u, v)| by_quad([0.0; 3], c, u, v)).sum();
+    let by_ring: f64 = ring.iter().map(|&(c, u, v)| quad_irradiance([0.0; 3], c, u, v)).sum();
     // A disc wholly above the floor gives its irradiance times the cosine of its center, however wide it is.
     let sun = |name, others: &str, diameter: f64, irradiance| {
         let (sin, cos) = libm::sincos(0.7);
@@ -86,7 +86,7 @@ fn crowds() -> Vec<Case> {
             let [x, z] = [i, j].map(|k| 1.3 * f64::from(k) - 0.8 * f64::from(rows) + 0.37);
             let (center, u, v) = (DVec3::new(x, 2.0, z), DVec3::X * 0.2, DVec3::Z * 0.1);
             squares.push(quad(center, u, v));
-            irradiance += by_quad([0.0; 3], center, u, v);
+            irradiance += quad_irradiance([0.0; 3], center, u, v);
             if (i + 2 * j) % 3 == 0 {
                 let (way, intensity) = (DVec3::new(x + 0.3, 1.0 + 0.1 * f64::from(j % 5), z), 0.01 * f64::from(1 + i));
                 points += &format!(

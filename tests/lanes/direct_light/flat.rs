@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 
 use abbe::math::DVec3;
 
-use super::{Case, assert_closed_forms, by_polygon, by_quad, case};
+use super::{Case, assert_closed_forms, case, polygon_irradiance, quad_irradiance};
 use crate::support::scenes::quad;
 
 /// Returns cases of discs and polygons.
@@ -13,7 +13,7 @@ fn flat_lights() -> Vec<Case> {
     let points = triangle.map(|p| format!("{:?}", p.to_array())).join(", ");
     let wall = |h: f64, below: f64| {
         let whole = quad([-h, 0.5 - below, 0.0], DVec3::Y * (0.5 + below), DVec3::Z);
-        (whole, by_quad([0.0; 3], DVec3::new(-h, 0.5, 0.0), DVec3::Y * 0.5, DVec3::Z))
+        (whole, quad_irradiance([0.0; 3], DVec3::new(-h, 0.5, 0.0), DVec3::Y * 0.5, DVec3::Z))
     };
     let ((near, by_near), (sunk, by_sunk)) = (wall(1e-4, 0.0), wall(0.5, 0.4));
     let tilted = (DVec3::new(0.6, 1.4, 0.2), DVec3::new(0.8, 0.3, 0.1), DVec3::new(-0.2, 0.3, 0.9));
@@ -22,8 +22,8 @@ fn flat_lights() -> Vec<Case> {
         case("G1 disc", &["disc = { center = [0, 2, 0], normal = [0, -1, 0], radius = 1 }"], high),
         case("disc close by", &["disc = { center = [0, 0.3, 0], normal = [0, 1, 0], radius = 1 }"], low),
         case("G2 square", &["quad = { center = [0, 1, 0], u = [1, 0, 0], v = [0, 0, 1] }"], square),
-        case("tilted square", &[&tilted_quad], by_quad([0.0; 3], tilted.0, tilted.1, tilted.2)),
-        case("triangle", &[&format!("triangle = {{ points = [{points}] }}")], by_polygon([0.0; 3], &triangle)),
+        case("tilted square", &[&tilted_quad], quad_irradiance([0.0; 3], tilted.0, tilted.1, tilted.2)),
+        case("triangle", &[&format!("triangle = {{ points = [{points}] }}")], polygon_irradiance([0.0; 3], &triangle)),
         case("L3 wall that touches the floor", &[&near], by_near),
         case("wall that goes on below the floor", &[&sunk], by_sunk),
         case(

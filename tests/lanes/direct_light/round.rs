@@ -2,17 +2,18 @@ use std::f64::consts::PI;
 
 use abbe::math::DVec3;
 
-use super::{Case, assert_closed_forms, by_ball, by_quad, case, lamp};
+use super::{Case, assert_closed_forms, ball_irradiance, case, lamp, quad_irradiance};
 
 /// Returns cases of balls, ellipsoids and boxes.
 fn round_lights() -> Vec<Case> {
     let ball = |center: [f64; 3], radius: f64| format!("sphere = {{ center = {center:?}, radius = {radius:?} }}");
-    let over = |name, center, radius| case(name, &[&ball(center, radius)], by_ball([0.0; 3], center, radius));
+    let ball_case =
+        |name, center, radius| case(name, &[&ball(center, radius)], ball_irradiance([0.0; 3], center, radius));
     let touching = |name, x: f64| Case {
         point: [x, 0.0, 0.0],
         // The camera looks in below the side of the ball.
         camera: [x + 9.0, 9.0 * x, 0.0],
-        irradiance: by_ball([x, 0.0, 0.0], [0.0, 1.0, 0.0], 1.0),
+        irradiance: ball_irradiance([x, 0.0, 0.0], [0.0, 1.0, 0.0], 1.0),
         ..case(name, &[&ball([0.0, 1.0, 0.0], 1.0)], 0.0)
     };
     // Half of the ball is above the horizon. Its projection is the segment that its edge cuts off the unit disc
@@ -36,7 +37,7 @@ fn round_lights() -> Vec<Case> {
     let (center, half) = (DVec3::new(0.9, 1.1, -0.5), DVec3::new(0.4, 0.3, 0.6));
     let face = |axis: DVec3, sign: f64| {
         let [u, v] = [DVec3::new(axis.y, axis.z, axis.x), DVec3::new(axis.z, axis.x, axis.y)];
-        by_quad([0.0; 3], center + axis * half * sign, u * half, v * half)
+        quad_irradiance([0.0; 3], center + axis * half * sign, u * half, v * half)
     };
     let sides = face(DVec3::Y, -1.0) + face(DVec3::X, -1.0);
     let cube = "cube = { center = [0.9, 1.1, -0.5], size = [0.8, 0.6, 1.2] }";
@@ -49,9 +50,9 @@ fn round_lights() -> Vec<Case> {
         (0..8).map(corner).collect::<Vec<_>>().join(", ")
     );
     vec![
-        over("ball overhead", [0.0, 3.0, 0.0], 1.0),
-        over("ball aside", [-2.0, 1.5, 1.0], 0.8),
-        over("L1 ball far away", [60.0, 80.0, 0.0], 0.01),
+        ball_case("ball overhead", [0.0, 3.0, 0.0], 1.0),
+        ball_case("ball aside", [-2.0, 1.5, 1.0], 0.8),
+        ball_case("L1 ball far away", [60.0, 80.0, 0.0], 0.01),
         touching("ball that touches the floor", 0.5),
         touching("ball that touches the floor close by", 0.05),
         case("ball half below the floor", &[&ball([-2.0, 0.0, 0.0], 1.0)], angle - libm::sin(angle) * libm::cos(angle)),
