@@ -101,7 +101,7 @@ fn aimed_samples_find_what_plain_samples_find() {
         let aimed = Mean::over_seeds(&films_of(&scene, &method, 0..32));
         let plain = Method { highlights: Vec::new(), samples: 4096, ..method };
         let plain = Mean::over_seeds(&films_of(&scene, &plain, 100..132));
-        aimed.exr_path(&plain).assert_near(plain.value, 3 * cases.len(), name);
+        aimed.with_joint_error(&plain).assert_near(plain.value, 3 * cases.len(), name);
     }
 }
 
