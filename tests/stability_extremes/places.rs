@@ -31,7 +31,7 @@ fn h1_stretched_bodies_and_instances_keep_all_light() {
                     + &environment(1.0);
                 let (film, report) = render_film(&text, SPLITTING);
                 let what = format!("{material}, {}, {scale}", &shape[..shape.len().min(40)]);
-                // In a body as thin as 10^-3, a ray aimed at its rim has no room, and one in 10^6 may go astray.
+                // In a body as thin as 10^-3, a ray aimed at its rim has no room, and one in 10^5 may go astray.
                 assert!(
                     report.unmatched * 100_000 <= report.rays,
                     "{what}: {} of {} rays",
