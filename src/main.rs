@@ -14,8 +14,8 @@ use abbe::{Error, Image, Rendering, Result, Scene, write_plan};
 
 use command::cli::{self, Job, Jobs, Output, Request};
 use command::events::{Event, write_account};
-use command::keep::Saver;
 use command::outputs::{Folders, check_not_input, check_outputs, check_stdout, check_text_file, is_stdio};
+use command::saving::Saver;
 use command::{catalog, diff, info, merge, messages, progress, signals, view};
 
 fn main() -> ExitCode {

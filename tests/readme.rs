@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use abbe::Error;
 use abbe::scene::Source;
 
-use crate::support::texts::texts;
+use crate::support::repository::texts;
 
 /// The pages that show pieces of scenes.
 const PAGES: [&str; 2] = ["README.md", "scenes/REFERENCE.md"];

@@ -18,7 +18,7 @@ use abbe::trace::{prepare, render};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use crate::support::texts::scenes;
+use crate::support::repository::scenes;
 use edits::{apply_edit, change, edit};
 
 fn cases(cases: u32) -> ProptestConfig {

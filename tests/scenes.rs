@@ -12,7 +12,7 @@ use abbe::scene::Scene;
 use abbe::spectrum::Curve;
 use abbe::trace::{Transport, prepare, render};
 
-use crate::support::texts::scenes;
+use crate::support::repository::scenes;
 
 /// Compiles a scene at its own size, or at a given width with one sample.
 fn compiled(path: &Path, width: Option<u32>) -> Scene<Curve> {

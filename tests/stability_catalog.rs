@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-use crate::support::texts::texts;
+use crate::support::repository::texts;
 
 /// Number of rows that there must be for each letter.
 const ROWS: [(&str, u32); 16] = [

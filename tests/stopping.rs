@@ -14,8 +14,8 @@ use abbe::trace::{Method, Stopped};
 use abbe::{Advance, Image, Options, Rendering, Resumed, Scene, render};
 
 use crate::checkpoints::{CAUSTIC, GLASS, Kind, ROOM, advance, bytes, planned, rendering};
+use crate::support::parallel::parallel_map;
 use crate::support::random::Random;
-use crate::support::renders::parallel_map;
 use crate::support::scenes::scene;
 
 fn stop_at(error: f64, most: u32) -> Options {

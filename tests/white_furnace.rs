@@ -8,7 +8,7 @@
 use abbe::material::{Index, Lobes, Material, ScatterContext};
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{self, LOSSLESS, context, direction_at, material};
+use crate::support::materials::{self, LOSSLESS, context, direction_at, material};
 
 const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
 const INDICES: [f64; 5] = [1.1, 1.33, 1.52, 1.9, 2.5];
@@ -24,7 +24,7 @@ fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> [f64; 2] 
     let draw = Draw::<4>::fixed(3);
     let context =
         ScatterContext { beyond: Index::Same(indices[1]), ..context(&draw, direction_at(cos, 0.4), indices[0]) };
-    let [[shown, error], ..] = arrivals::furnace(material, &context, DRAWS);
+    let [[shown, error], ..] = materials::furnace(material, &context, DRAWS);
     [shown, if material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION) { 3.0 * error } else { 0.0 }]
 }
 

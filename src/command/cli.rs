@@ -13,10 +13,10 @@ use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 
 use super::frames::{Frames, check_has_number, frame_path};
-use super::meant::{suggest, suggest_for_subcommand};
 use super::messages::{Listener, Protocol, is_colored, listener, set_listener};
 use super::outputs::{check_exposure, check_png, has_extension, is_stdio};
-use super::{catalog, diff, info, keep, manual, merge, view};
+use super::suggestions::{suggest, suggest_for_subcommand};
+use super::{catalog, diff, info, manual, merge, saving, view};
 
 const HELP: &str = "\
 Commands:
@@ -127,7 +127,7 @@ struct Arguments {
     error: Option<f64>,
 
     /// Take samples for this long: 90s, 10m, 1.5h
-    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = keep::time)]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = saving::time)]
     time: Option<Duration>,
 
     /// Choose another set of random numbers, instead of the scene's
@@ -163,7 +163,7 @@ struct Arguments {
     report: Option<PathBuf>,
 
     #[command(flatten)]
-    keep: keep::Flags,
+    keep: saving::Flags,
 
     /// Record in the EXR when it was made, how long that took, and on how many threads. Without it, two runs write the
     /// same bytes
@@ -228,7 +228,7 @@ impl Jobs {
     }
 
     /// Returns the flags for checkpoints, snapshots and parts.
-    pub fn keep(&self) -> &keep::Flags {
+    pub fn keep(&self) -> &saving::Flags {
         &self.0.keep
     }
 
@@ -270,7 +270,7 @@ pub struct Job {
     pub output: Output,
     pub exposure: f64,
     pub options: Options,
-    pub keep: keep::Flags,
+    pub keep: saving::Flags,
     /// The file for the report on the render.
     pub report: Option<PathBuf>,
 }

@@ -8,7 +8,7 @@ use abbe::plan::Plan;
 use abbe::{Diagnostic, Error, Image, Lines, PlanAccount, RenderAccount, Result};
 use serde::{Serialize, Serializer};
 
-use super::problem::problem;
+use super::error_text::problem;
 use super::stdout::print;
 
 /// Something that happened or was found out.

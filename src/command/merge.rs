@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use abbe::{Error, Parts, Result, is_checkpoint};
 use clap::Parser;
 
+use super::error_text::problem;
 use super::messages::{Listener, Protocol, print_written, set_listener, warn, warn_of_clamped};
 use super::outputs::{Folders, check_not_input, has_extension};
-use super::problem::problem;
 use super::signals::exit_on_ctrl_c;
 
 const EXAMPLES: &str = "\

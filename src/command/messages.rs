@@ -16,9 +16,9 @@ use abbe::{Diagnostic, Error, Image, ImageError, Result};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use clap::ValueEnum;
 
+use super::error_text::{problem, reason};
 use super::events::Event;
 use super::openjd;
-use super::problem::{problem, reason};
 use super::stdout;
 
 /// The reader of the messages.

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::file::{cannot_read, cannot_write, replace_with};
+use super::atomic_file::{cannot_read, cannot_write, replace_with};
 use crate::error::{Error, Result};
 
 /// The first bytes of a file, which identify its kind.

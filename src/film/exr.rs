@@ -10,9 +10,9 @@ use exr::meta::attribute::{Chromaticities, EnvironmentMap};
 use exr::prelude::{AttributeValue, ImageAttributes, IntegerBounds, LayerAttributes, Text, Vec2};
 use serde::{Deserialize, Serialize};
 
+use super::atomic_file::replace_with;
 use super::exr_blocks::{self, CLAMPED_KEY, ScanLinePart};
 use super::exr_column::{Column, Of};
-use super::file::replace_with;
 use super::format::{Compression, Format, Precision};
 use super::image::Film;
 use super::rows::Rows;

@@ -13,9 +13,9 @@ use exr::prelude::{ChannelDescription, ImageAttributes, LayerAttributes, LineOrd
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use zlib_rs::{DeflateConfig, ReturnCode, compress_bound, compress_slice};
 
+use super::atomic_file::{Destination, cannot_write};
 use super::exr_column::Column;
 use super::exr_head;
-use super::file::{Destination, cannot_write};
 use super::format::Compression;
 use super::image::Film;
 use super::rows::Rows;

@@ -12,11 +12,11 @@ use exr::prelude::{
     ChannelDescription, Compression, FlatSamples, LineOrder, ReadChannels, ReadLayers, SampleType, Vec2, read,
 };
 
+use super::atomic_file::cannot_read;
+use super::decoder_guard::{MOST_PIXELS, catch_panics, check_claimed_sizes, fits, too_large};
 use super::exr_attributes::{attributes, primaries, text};
 use super::exr_layer::{BEAUTY, ExrLayer};
 use super::exr_part::{Channel, Part, PixelBounds};
-use super::file::cannot_read;
-use super::guard::{MOST_PIXELS, catch_panics, check_claimed_sizes, fits, too_large};
 use crate::error::{Error, Result, has_extension, nearest, nearest_file};
 use crate::spectrum::Primaries;
 

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use exr::prelude::{AttributeValue, ImageAttributes, Text};
 
+use super::atomic_file::replace_with;
 use super::exr::{Heading, attributes, chromaticities, colors, display_window};
 use super::exr_blocks::{self, ScanLinePart};
 use super::exr_column::{Column, Of};
-use super::file::replace_with;
 use super::format::Compression;
 use super::rows::Rows;
 use crate::error::Result;

@@ -1,7 +1,9 @@
 //! Floor 2: the film, which stores the light that arrives, and the files it is written to.
 
+mod atomic_file;
 mod blocks;
 mod cryptomatte;
+mod decoder_guard;
 mod exr;
 mod exr_attributes;
 mod exr_blocks;
@@ -11,10 +13,8 @@ mod exr_head;
 mod exr_layer;
 mod exr_part;
 mod exr_spectral;
-mod file;
 mod filter;
 mod format;
-mod guard;
 mod image;
 mod layers;
 mod mitchell;
@@ -29,13 +29,13 @@ mod time;
 mod window;
 
 pub use self::exr::{CameraView, Fact, Heading, Optics, Provenance, encode_exr, write_exr};
+pub use atomic_file::{check_writable, remove_unfinished, replace_file};
 pub use cryptomatte::{Manifest, RANKS, id};
 pub use exr_attributes::CameraMatrix;
 pub use exr_file::ExrFile;
 pub use exr_layer::{BEAUTY, ExrLayer};
 pub use exr_part::{Channel, Part, PixelBounds, Statistics};
 pub use exr_spectral::write_spectral_exr;
-pub use file::{check_writable, remove_unfinished, replace_file};
 pub use filter::Filter;
 pub use format::{Compression, Format, Precision};
 pub use image::{DEPTH_OF_NOTHING, Film, Pixel, Sample};
@@ -51,5 +51,5 @@ pub use tile_values::TileValues;
 pub use window::{Overscan, Window};
 
 pub(crate) use blocks::{BlockReader, BlockWriter, Kind, write_blocks};
+pub(crate) use decoder_guard::{MOST_PIXELS, MOST_TEXELS, catch_panics, check_claimed_sizes, fits, too_large};
 pub(crate) use exr_attributes::{primaries as exr_primaries, text as exr_text};
-pub(crate) use guard::{MOST_PIXELS, MOST_TEXELS, catch_panics, check_claimed_sizes, fits, too_large};

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use super::file::replace_file;
+use super::atomic_file::replace_file;
 use super::image::Film;
 use crate::error::{Error, Result};
 use crate::spectrum::{apply, encode_srgb};

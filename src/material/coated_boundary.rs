@@ -1,8 +1,8 @@
 //! The smooth coated surface of a clear body, evaluated lane by lane.
 
 use super::coating::LocalCoating;
-use super::degree::combined_degree;
 use super::fresnel::SharedRay;
+use super::polarization_degree::combined_degree;
 use super::refractions::Refractions;
 use super::stack::StackShares;
 use super::{Block, Branch, Coating, Interface, ScatterContext};

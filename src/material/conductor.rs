@@ -1,11 +1,11 @@
 use std::array;
 
 use super::coating::LocalCoating;
-use super::degree::{MAX_EVALUATED_LANES, combined_degree, degree, max_degree};
 use super::film_averages::{FilmAverages, mean};
 use super::fresnel::conductor_reflectances;
 use super::lane_cache::LaneCache;
-use super::last::LastResult;
+use super::last_result::LastResult;
+use super::polarization_degree::{MAX_EVALUATED_LANES, combined_degree, degree, max_degree};
 use super::roughness::to_local_above;
 use super::{
     Block, Branch, Coating, Incoming, Mueller, PolarizedShare, RoughReflection, RoughSurface, Roughness,

@@ -1,5 +1,5 @@
 use super::coated_boundary::{self, block_at};
-use super::last::LastResult;
+use super::last_result::LastResult;
 use super::refractions::Refractions;
 use super::rough_dielectric::{RoughBoundary, parts};
 use super::{

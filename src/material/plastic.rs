@@ -1,9 +1,9 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::coat::{Coat, CoatTransmittance};
-use super::degree::{MAX_EVALUATED_LANES, combined_degree, max_degree};
-use super::last::LastResult;
+use super::last_result::LastResult;
 use super::plastic_film::PlasticFilm;
+use super::polarization_degree::{MAX_EVALUATED_LANES, combined_degree, max_degree};
 use super::roughness::to_local_above;
 use super::{
     Base, Block, Branch, Coating, Incoming, Interface, Lobes, Mueller, RoughReflection, RoughSurface, ScatterContext,

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use smallvec::SmallVec;
 
 use super::Block;
-use super::degree::degree;
+use super::polarization_degree::degree;
 use crate::math::Complex;
 
 /// Maximum number of layers of one coating.

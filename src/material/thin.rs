@@ -1,5 +1,5 @@
-use super::degree::{combined_degree, degree, max_degree};
-use super::last::LastResult;
+use super::last_result::LastResult;
+use super::polarization_degree::{combined_degree, degree, max_degree};
 use super::{Block, Branch, Coating, Interface, Mueller, ScatterContext, StackShares, Straight, conductor_reflectance};
 use crate::spectrum::{Draw, LaneSet, Lanes, Quantity, Table};
 

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::efficiency::{OfferedPhotons, PhotonGain, rounded};
-use super::words::{describe_effort, format_count};
+use super::format::{describe_effort, format_count};
+use super::photon_gain::{OfferedPhotons, PhotonGain, rounded};
 use crate::light::{Light, LightId, Opening};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, median};

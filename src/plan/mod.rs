@@ -1,22 +1,22 @@
 //! Floor 5: looks at a scene, decides how little of the world must be modeled to render it, and says why.
 
 mod adaptive;
-mod between;
 mod candidates;
 mod caustics;
 mod dyes;
-mod efficiency;
 mod films;
+mod format;
+mod indirect;
+mod lighting;
 mod lights;
-mod lit;
 mod model;
+mod photon_gain;
 mod photon_map;
 mod polarization;
 mod seen;
 mod stopping;
 mod survey;
 mod transport;
-mod words;
 
 use std::time::Duration;
 
@@ -31,10 +31,10 @@ use crate::trace::{
     probe, small_highlights,
 };
 use caustics::left_out_point_light;
-use lit::LitWorld;
+use format::{format_count, format_duration};
+use lighting::LitWorld;
 use model::Model;
 use survey::path_method;
-use words::{format_count, format_duration};
 
 pub use candidates::Candidate;
 
@@ -78,7 +78,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     decisions.push(reason);
     let unlit = prepare_unguided(scene, method);
     let highlights = small_highlights(&unlit);
-    decisions.extend(words::highlights(&highlights));
+    decisions.extend(format::highlights(&highlights));
     let unlit = unlit.with_highlights(highlights);
     let LitWorld { world, because, guided } = LitWorld::new(scene, &unlit);
     decisions.extend(because);

@@ -1,8 +1,8 @@
 //! Decides whether caustics that are not seen directly need a photon map.
 
 use super::caustics::{Sources, targets};
-use super::efficiency::rounded;
-use super::words::{format_count, percent};
+use super::format::{format_count, percent};
+use super::photon_gain::rounded;
 use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{

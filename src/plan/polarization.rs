@@ -1,7 +1,7 @@
 //! Decides whether polarization is traced, and why.
 
+use super::format::{percent, percent_and_limit};
 use super::survey::tolerance;
-use super::words::{percent, percent_and_limit};
 use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Polarizing, World, most_changed, polarization_error};

@@ -1,6 +1,6 @@
 //! Decides when enough samples are taken.
 
-use super::words::{format_duration, percent};
+use super::format::{format_duration, percent};
 use crate::film::Window;
 use crate::scene::{RenderText, Scene};
 use crate::spectrum::Curve;

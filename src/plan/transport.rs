@@ -1,7 +1,7 @@
 //! Decides whether light is followed along all branches, or along some that are chosen by chance.
 
+use super::format::percent;
 use super::survey::path_method;
-use super::words::percent;
 use crate::film::{Filter, Layer};
 use crate::light::Light;
 use crate::material::Material;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::image_error::ImageError;
-use super::origin::SAMPLES;
+use super::provenance::SAMPLES;
 use super::warnings::{few_samples, warnings};
 use crate::error::Result;
 use crate::film::{

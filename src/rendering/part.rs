@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::identity::Identity;
 use super::image::Image;
-use super::origin::{NON_FINITE, SAMPLES};
+use super::provenance::{NON_FINITE, SAMPLES};
 use crate::error::{Error, Result};
 use crate::film::{BlockReader, CameraView, Film, Format, Kind, Provenance, Shard, write_blocks};
 use crate::scene::FilmSettings;

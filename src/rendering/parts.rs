@@ -5,8 +5,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::image::Image;
-use super::origin::NON_FINITE;
 use super::part::{PartHeader, open};
+use super::provenance::NON_FINITE;
 use crate::error::{Error, Result};
 use crate::film::{
     BlockReader, Film, Format, Rows, Shard, TILE, TilePlace, TileValues, Window, write_exr, write_spectral_exr,

@@ -1,9 +1,9 @@
 use std::sync::OnceLock;
 
 use super::edges::open_edges;
-use super::packed::PackedTriangles;
+use super::flipped::turned;
+use super::packed_triangles::PackedTriangles;
 use super::triangle::{Facet, tangents_over};
-use super::turned::turned;
 use super::{Attributes, Intersection, Polygon, SurfacePoint, Triangle, Vertices};
 use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 

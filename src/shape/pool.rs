@@ -1,5 +1,5 @@
 use super::mesh::SMALL_MESH;
-use super::packed::PackedTriangles;
+use super::packed_triangles::PackedTriangles;
 use super::{Intersection, Shape, Triangle, Vertices};
 use crate::math::{DVec3, Ray};
 

@@ -31,6 +31,7 @@
 //! ```
 
 mod bright;
+mod budget;
 mod camera;
 mod contribution;
 mod density;
@@ -41,7 +42,6 @@ mod guide;
 mod highlight;
 mod image;
 mod layers;
-mod look;
 mod media;
 mod method;
 mod parallel;
@@ -61,6 +61,7 @@ mod width;
 mod world;
 
 pub use bright::{BrightPlace, BrightPlaces};
+pub use budget::RAYS_OF_A_LOOK;
 pub use density::SampleDensity;
 pub use dispersion::{COLORS_NM, Dispersion, ROUTES_NM, Route, RouteEvent, SEEN_PIXELS, Step, dispersion, routes};
 pub use highlight::Highlight;
@@ -68,7 +69,6 @@ pub use image::{
     Advance, Estimate, FIRST_LOOK, Measured, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored,
     Stopped, TileNoise, bytes_of_film, render,
 };
-pub use look::RAYS_OF_A_LOOK;
 pub use media::MOST_MEDIA;
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
 pub use parallel::run_on;

@@ -7,7 +7,7 @@ use abbe::trace::{Estimate, LightPass, MapPasses, Method, Report, Smoothness, St
 
 use super::agreement::{camera_and_film, glass, scene_and_method};
 use super::gathered::mirror;
-use crate::support::renders::parallel_map;
+use crate::support::parallel::parallel_map;
 use crate::support::scenes::{SPLITTING, mean_and_variance, object};
 
 /// Pixels along each side of the images.

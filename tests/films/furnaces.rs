@@ -5,7 +5,7 @@ use abbe::material::{Index, Lobes, Material, ScatterContext};
 use abbe::spectrum::{Draw, Table};
 
 use super::reference::shares;
-use crate::support::arrivals::{self, context, direction_at, material};
+use crate::support::materials::{self, context, direction_at, material};
 
 const COSINES: [f64; 7] = [0.01, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
 const DRAWS: u32 = 1 << 12;
@@ -19,7 +19,7 @@ fn furnace(material: &Material<Table>, indices: [f64; 2], from_inside: bool, cos
     let at = context(&draw, direction_at(cos, 0.4), indices[0]);
     let context = ScatterContext { beyond: Index::Same(indices[1]), from_inside, ..at };
     let allowed = if material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION) { 4.0 } else { 0.0 };
-    arrivals::furnace(material, &context, DRAWS).map(|[shown, error]| [shown, allowed * error])
+    materials::furnace(material, &context, DRAWS).map(|[shown, error]| [shown, allowed * error])
 }
 
 /// Clear films: a quarter wave, soap, a mirror of five layers, and a layer thicker than a wavelength.

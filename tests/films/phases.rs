@@ -4,7 +4,7 @@ use abbe::material::{Block, Incoming, Index, Layer, Mueller, PolarizedShare, Sca
 use abbe::math::Complex;
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{context, direction_at, material};
+use crate::support::materials::{context, direction_at, material};
 
 /// Returns the light reflected at 550 nm by one clear layer on n - i k, at an angle in degrees.
 fn reflected(index: f64, thickness_nm: f64, n2: [f64; 2], degrees: f64) -> PolarizedShare {

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use super::source::{Names, Source};
-use crate::support::texts::texts;
+use crate::support::repository::texts;
 
 /// All files, and the file of each module.
 pub struct SourceTree {

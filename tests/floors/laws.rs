@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::exceptions::{ABROAD, LONG, SHARED, TUPLES, WIDE};
 use super::house::{SourceTree, assert_exactly, source_texts};
-use crate::support::texts::texts;
+use crate::support::repository::texts;
 
 /// Maximum number of lines of a file.
 const MAX_FILE_LINES: usize = 500;

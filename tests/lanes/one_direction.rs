@@ -12,10 +12,10 @@ use abbe::spectrum::{
 };
 use abbe::trace::{Method, prepare, render};
 
-use crate::support::arrivals::{context, direction_at, material};
 use crate::support::colors::{difference, lab};
 use crate::support::fresnel::reflectances;
 use crate::support::larger::larger;
+use crate::support::materials::{context, direction_at, material};
 use crate::support::scenes::{
     EVERY_BRANCH, Mean, SINGLE_PATH, body, environment, film_of, method, scene, sigma_limit, view,
 };

@@ -6,8 +6,8 @@ use abbe::material::{Lobes, Material, Scatter, ScatterContext};
 use abbe::math::Frame;
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{NORMAL, context, direction_at, material};
 use crate::support::chi_squared;
+use crate::support::materials::{NORMAL, context, direction_at, material};
 use crate::support::random::Random;
 
 const TEXTS: [&str; 6] = [

@@ -3,7 +3,7 @@
 use abbe::material::{Interface, Material, Scatter, diffuse_transmittance};
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{self, BASE_MATERIALS, context, direction_at, material};
+use crate::support::materials::{self, BASE_MATERIALS, context, direction_at, material};
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, render_film, view};
 
@@ -13,7 +13,7 @@ const DRAWS: u32 = 1 << 14;
 /// Returns what each band shows of a uniform environment of radiance 1.
 fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let draw = Draw::<4>::fixed(3);
-    arrivals::furnace(material, &context(&draw, direction_at(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
+    materials::furnace(material, &context(&draw, direction_at(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Lamps above plastic and mixes: next-event estimation and random hits agree.
 
-use crate::support::arrivals::BASE_MATERIALS;
+use crate::support::materials::BASE_MATERIALS;
 use crate::support::scenes::{GROUND, Mean, SPLITTING, assert_next_event_agrees, body, lamps, view};
 
 const LAMP: &str = "sphere = { center = [-1, 2, 0], radius = 0.7 }";

@@ -3,7 +3,7 @@
 use abbe::plan::plan;
 use abbe::trace::Transport;
 
-use crate::support::arrivals::BASE_MATERIALS;
+use crate::support::materials::BASE_MATERIALS;
 use crate::support::scenes::{body, scene, view};
 
 const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";

@@ -50,7 +50,7 @@ const NUMBERS: [(&str, SceneWriter); 35] = [
 
 /// The beginning of each row of the second table, the file in which the code defines the number, and its name there.
 const COUNTS: [(&str, &str, &str); 17] = [
-    ("pixels of the film", "src/film/guard.rs", "MOST_PIXELS"),
+    ("pixels of the film", "src/film/decoder_guard.rs", "MOST_PIXELS"),
     ("bytes of the layers", "src/rendering/options.rs", "MOST_OF_LAYERS"),
     ("bands of a spectral image", "src/spectrum/wavelength_bands.rs", "MAX_COUNT"),
     ("samples of a pixel", "src/plan/stopping.rs", "MOST"),
@@ -58,9 +58,9 @@ const COUNTS: [(&str, &str, &str); 17] = [
     ("hero wavelengths", "src/spectrum/draw.rs", "MAX_HEROES"),
     ("layers of a coating", "src/material/stack.rs", "MAX_LAYERS"),
     ("clear materials", "src/trace/media.rs", "MOST_MEDIA"),
-    ("materials that one", "src/scene/compile/parts.rs", "MAX_PARTS"),
-    ("materials within", "src/scene/compile/parts.rs", "MAX_DEPTH"),
-    ("pixels of an image", "src/film/guard.rs", "MOST_TEXELS"),
+    ("materials that one", "src/scene/compile/material_parts.rs", "MAX_PARTS"),
+    ("materials within", "src/scene/compile/material_parts.rs", "MAX_DEPTH"),
+    ("pixels of an image", "src/film/decoder_guard.rs", "MOST_TEXELS"),
     ("bytes of a scene", "src/scene/text/include.rs", "MAX_BYTES"),
     ("files that include", "src/scene/text/include.rs", "MAX_DEPTH"),
     ("bytes of an OpenEXR file", "src/film/exr_file.rs", "MOST_BYTES"),

@@ -6,8 +6,8 @@ use abbe::material::{FacetSides, RoughInterface};
 use abbe::math::DVec3;
 
 use super::for_each_boundary;
-use crate::support::arrivals::{direction_about_z as at, hammersley_points};
 use crate::support::chi_squared;
+use crate::support::materials::{direction_about_z as at, hammersley_points};
 use crate::support::random::Random;
 
 const ROUGHNESSES: [f64; 4] = [0.02, 0.3, 0.8, 1.0];

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use abbe::material::{BsdfValue, FacetSample, FacetSides, RoughInterface};
 use abbe::math::DVec3;
 
-use crate::support::arrivals::direction_about_z as at;
 use crate::support::chi_squared;
+use crate::support::materials::direction_about_z as at;
 use crate::support::random::Random;
 
 const ROUGHNESSES: [f64; 5] = [0.02, 0.3, 0.77, 0.99, 1.0];

@@ -5,10 +5,10 @@ use std::f64::consts::{PI, TAU};
 use abbe::material::{Facets, RoughSurface, Roughness};
 use abbe::math::{DVec3, sample_sphere};
 
-use crate::support::arrivals::direction_about_z as at;
 use crate::support::chi_squared;
 use crate::support::exact::Exact;
 use crate::support::larger::larger;
+use crate::support::materials::direction_about_z as at;
 use crate::support::random::Random;
 
 /// A grid of light directions. A direction is located by the facet that mirrors it, with the facet's slope s and

@@ -4,8 +4,8 @@ use abbe::material::{Material, Roughness};
 use abbe::math::DVec3;
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{self, LOSSLESS, context, direction_at, hammersley_points, material};
 use crate::support::larger::larger;
+use crate::support::materials::{self, LOSSLESS, context, direction_at, hammersley_points, material};
 use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, render_film, view};
 
 const ROUGHNESSES: [f64; 9] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
@@ -21,7 +21,7 @@ const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
 /// Returns what a metal below a medium of the given index shows of a uniform environment of radiance 1.
 fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let draw = Draw::<4>::fixed(3);
-    arrivals::furnace(material, &context(&draw, direction_at(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
+    materials::furnace(material, &context(&draw, direction_at(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
 }
 
 #[test]

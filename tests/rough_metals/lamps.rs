@@ -6,7 +6,7 @@ use abbe::plan::plan;
 use abbe::spectrum::Draw;
 use abbe::trace::{Transport, prepare};
 
-use crate::support::arrivals::context;
+use crate::support::materials::context;
 use crate::support::scenes::{
     EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, assert_next_event_agrees, body, lamps, method, render_film, scene, view,
 };

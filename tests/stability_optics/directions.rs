@@ -6,9 +6,9 @@ use abbe::shape::SurfacePoint;
 use abbe::spectrum::{Draw, Table};
 use abbe::trace::prepare;
 
-use crate::support::arrivals::context;
 use crate::support::exact::{Exact, ExactVector};
 use crate::support::larger::larger;
+use crate::support::materials::context;
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, method, scene, view};
 

@@ -6,9 +6,9 @@ use abbe::material::{Branch, Index, Interface, Material, Scatter, ScatterContext
 use abbe::math::{DVec3, UNIT_ROUNDOFF};
 use abbe::spectrum::{Draw, Lanes, Table};
 
-use crate::support::arrivals::{context, material};
 use crate::support::exact::Exact;
 use crate::support::larger::larger;
+use crate::support::materials::{context, material};
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, environment, render_film, view};
 

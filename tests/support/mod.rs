@@ -2,16 +2,16 @@
 
 #![allow(dead_code)]
 
-pub mod arrivals;
 pub mod bodies;
 pub mod chi_squared;
 pub mod colors;
 pub mod exact;
 pub mod fresnel;
 pub mod larger;
+pub mod materials;
+pub mod parallel;
 pub mod pictures;
 pub mod random;
-pub mod renders;
+pub mod repository;
 pub mod run;
 pub mod scenes;
-pub mod texts;

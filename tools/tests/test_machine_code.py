@@ -35,7 +35,7 @@ def walks_that_fill(listing):
 
     Excludes functions that run third-party decoders. The JPEG decoder has a list of equal length for the pieces of a
     color profile, and may be inlined into its callers."""
-    decoders = ("scene::decode", "film::guard")
+    decoders = ("scene::decode", "film::decoder_guard")
     own = lambda name: "abbe" in name and not any(decoder in name for decoder in decoders)
     return [name for name, length in fills(listing) if length in STACKS and own(name)]
 
@@ -52,7 +52,7 @@ def test_memsets_are_found_in_a_listing():
     ]
     assert list(fills(listing)) == [("abbe::walk", 2056)]
     assert walks_that_fill(listing) == ["abbe::walk"]
-    assert walks_that_fill(line.replace("walk", "film::guard::guarded") for line in listing) == []
+    assert walks_that_fill(line.replace("walk", "film::decoder_guard::guarded") for line in listing) == []
 
 
 def test_the_stack_of_a_walk_is_not_filled_in_advance():

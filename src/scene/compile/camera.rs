@@ -3,7 +3,7 @@
 use std::ops::Bound;
 
 use super::context::Context;
-use super::measures::{MAX_LENGTH, direction, length, point, radians_hint};
+use super::ranges::{MAX_LENGTH, direction, length, point, radians_hint};
 use crate::math::DVec3;
 use crate::scene::text::{Fields, Value, above_0_to, at, six_digits};
 use crate::scene::{Camera, FilmSettings, Lens, PolarizingFilter, Projection};

@@ -1,6 +1,6 @@
 //! Layers in which light interferes, as authors write them.
 
-use super::asked::{SpectrumDraft, spectrum, spectrum_or};
+use super::spectrum_draft::{SpectrumDraft, spectrum, spectrum_or};
 use crate::material::{Coating, CoatingLayer, MAX_LAYERS, Thin};
 use crate::scene::text::{Fields, Value};
 

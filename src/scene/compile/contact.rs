@@ -2,7 +2,7 @@
 
 use super::context::Context;
 use super::near_pairs::{MAX_PAIRS, NEAR, near_pairs};
-use super::place::PlacedObjects;
+use super::placement::PlacedObjects;
 use crate::material::Material;
 use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Object;

@@ -7,8 +7,8 @@ use super::curve_name::{
 };
 use super::curve_range::{CurveError, check_value, factor, name_with_article, thin_layer_warning};
 use super::curve_text::{CurveText, KindText, PAIRS_HELP, check_finite, not_finite};
-use super::measures::wavelength_unit_hint;
 use super::radiometry::scale_to_film;
+use super::ranges::wavelength_unit_hint;
 use super::spectrum_file::read_columns;
 use crate::scene::text::{FileKind, Spanned, Value, six_digits, utf8};
 use crate::scene::web_color::bytes_to_linear;

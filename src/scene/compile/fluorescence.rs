@@ -1,6 +1,6 @@
 //! Dyes in matte surfaces.
 
-use super::asked::{SpectrumDraft, spectrum};
+use super::spectrum_draft::{SpectrumDraft, spectrum};
 use crate::material::{Diffuse, Fluorescence};
 use crate::scene::text::{Fields, Value, six_digits};
 use crate::spectrum::Curve;

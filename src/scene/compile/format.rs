@@ -2,7 +2,7 @@
 
 use toml::de::DeValue;
 
-use super::measures::wavelength_unit_hint;
+use super::ranges::wavelength_unit_hint;
 use crate::film::{Compression, FirstSurface, Format, Layer, Precision};
 use crate::scene::text::{Fields, Spanned, Value, above_0_to, at};
 use crate::spectrum::WavelengthBands;

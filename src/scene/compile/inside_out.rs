@@ -1,6 +1,6 @@
 //! Closed meshes of clear bodies whose faces point inward, so that their inside is taken for the outside.
 
-use super::place::PlacedObjects;
+use super::placement::PlacedObjects;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Object;
 use crate::scene::checks::hit_from_outside;

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::asked::{SpectrumDraft, spectrum, spectrum_or};
 use super::camera::extinction;
 use super::coating::{coating, thin};
 use super::context::Context;
 use super::curve_text::CurveText;
 use super::fluorescence::{check_conservation, diffuse, dye_values};
 use super::image::surface_curve;
-use super::measures::{direction, small_retardance, small_retardation};
+use super::ranges::{direction, small_retardance, small_retardation};
+use super::spectrum_draft::{SpectrumDraft, spectrum, spectrum_or};
 use crate::material::{
     Coat, Conductor, Dielectric, Emissive, Material, Mirror, PathDifference, Plastic, Polarizer, Retardance, Retarder,
     Roughness,

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use super::context::Context;
-use super::measures::{COORDINATE, MAX_LENGTH, direction, in_range, is_coordinate, point, range_error};
-use super::written::ShapeText;
+use super::ranges::{COORDINATE, MAX_LENGTH, direction, in_range, is_coordinate, point, range_error};
+use super::shape_text::ShapeText;
 use crate::math::DVec3;
 use crate::scene::text::{Fields, Numbers, Rows, Spanned, Value, at};
 use crate::shape::{Attributes, Faces, Mesh, Shape, Vertices, read_mesh, vertex_normals};

@@ -1,7 +1,7 @@
 //! Compiles a scene's text to a world that can be rendered. The functions that read a scene define what it may contain,
 //! here and nowhere else. They resolve all names, check all numbers, and continue after a mistake.
 
-mod asked;
+mod area_lights;
 mod camera;
 mod coating;
 mod contact;
@@ -13,38 +13,38 @@ mod curve_text;
 mod film;
 mod fluorescence;
 mod format;
+mod hidden_bodies;
 mod image;
 mod image_file;
 mod image_numbers;
 mod inside_out;
 mod light;
 mod material;
-mod measures;
+mod material_parts;
 mod mesh;
 mod near_pairs;
 mod normal_perturbation;
 mod object;
-mod parts;
-mod place;
+mod placement;
 mod radiometry;
+mod ranges;
 mod render;
 mod shape;
-mod shining;
+mod shape_text;
+mod spectrum_draft;
 mod spectrum_file;
-mod swallowed;
 mod transform;
-mod written;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use sha2::Digest;
 use toml::de::DeValue;
 
+use self::area_lights::add_area_lights;
 use self::context::Context;
 use self::material::MaterialDrafts;
 use self::object::{Names, ObjectDraft};
-use self::place::PlacedObjects;
-use self::shining::add_area_lights;
+use self::placement::PlacedObjects;
 use super::checks::check;
 use super::index::Index;
 use super::text::{Document, Fields, INCLUDE, SET, Value};
@@ -90,7 +90,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     // The names in a section that is misspelled are not known.
     let has_unnamed = sections.is_misspelled("material");
     let drafts = drafts.unwrap_or_else(|| MaterialDrafts { by_name: BTreeMap::new(), has_unnamed });
-    let materials = parts::resolve_parts(&drafts);
+    let materials = material_parts::resolve_parts(&drafts);
     let mut names = Names { materials: &materials, has_unnamed: drafts.has_unnamed, unknown: BTreeSet::new() };
     let objects = objects.map(|objects| {
         let mut numbers = 0..;
@@ -99,10 +99,10 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     context.meshes.clear();
     let objects = objects.unwrap_or_default();
     warn_about_namesakes(context, &objects);
-    let placed = place::placed(objects, &materials);
+    let placed = placement::placed(objects, &materials);
     warn_about_unused(context, &placed, &drafts);
     contact::contacts(context, &placed);
-    let body_warnings = [inside_out::inside_out(&placed), swallowed::swallowed(&placed)];
+    let body_warnings = [inside_out::inside_out(&placed), hidden_bodies::swallowed(&placed)];
     body_warnings.into_iter().flatten().for_each(|warning| context.warn(warning));
     let mut has_environment = false;
     let lights = lights.map(|lights| entries(lights, |light| light::light(context, light, &mut has_environment)));

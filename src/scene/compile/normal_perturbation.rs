@@ -9,7 +9,7 @@ use super::context::Context;
 use super::curve_text::{CHANNELS, ENCODINGS, WRAPS, repeat};
 use super::image::image;
 use super::image_numbers::Meaning;
-use super::measures::MAX_LENGTH;
+use super::ranges::MAX_LENGTH;
 use crate::scene::text::{Fields, Value, at};
 use crate::scene::{NormalPerturbation, PerturbationKind};
 use crate::shape::Coordinates;

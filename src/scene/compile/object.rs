@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::context::Context;
+use super::material_parts::{Materials, list_materials, unknown_material};
 use super::normal_perturbation::{ReliefText, relief};
-use super::parts::{Materials, list_materials, unknown_material};
 use super::shape::SHAPE;
+use super::shape_text::ShapeText;
 use super::transform::{compose_steps, steps};
-use super::written::ShapeText;
 use crate::material::Material;
 use crate::math::Transform;
 use crate::scene::Visibility;

@@ -1,9 +1,9 @@
 //! From a shape as written to a shape that rays can hit.
 
 use super::context::Context;
-use super::measures::{MAX_LENGTH, MIN_LENGTH, direction, length, point, positive_length};
 use super::mesh::mesh;
-use super::written::ShapeText;
+use super::ranges::{MAX_LENGTH, MIN_LENGTH, direction, length, point, positive_length};
+use super::shape_text::ShapeText;
 use crate::math::{DVec3, Transform};
 use crate::scene::text::{Choice, Fields, Spanned, Value, at, exactly};
 use crate::shape::{Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};

@@ -1,6 +1,6 @@
 //! The steps of a transform.
 
-use super::measures::{direction, in_range, point};
+use super::ranges::{direction, in_range, point};
 use crate::math::{DMat3, DVec3, Transform};
 use crate::scene::text::{Choice, Fields, Spanned, Value, at};
 

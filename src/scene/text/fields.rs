@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use toml::de::DeTable;
 
+use super::aliases::{outside_of_material, value_help};
 use super::document::Document;
-use super::elsewhere::{outside_of_material, value_help};
 use super::include::INCLUDE;
 use super::suggest::{TABLE, meant_name, suggested_key, suggestion};
 use super::value::Value;

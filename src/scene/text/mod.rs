@@ -2,18 +2,18 @@
 //!
 //! The functions of `compile` that read a scene define what it may contain, and nothing else does.
 
+mod aliases;
 mod document;
-mod elsewhere;
 mod fields;
 mod include;
 mod mistake;
 mod named_file;
 mod rows;
 mod settings;
-mod slips;
 mod suggest;
 mod syntax;
 mod texts;
+mod toml_slips;
 mod tree;
 mod utf8;
 mod value;

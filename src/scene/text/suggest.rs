@@ -4,7 +4,7 @@ use std::path::Path;
 
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::elsewhere::{in_other_words, names_here};
+use super::aliases::{in_other_words, names_here};
 use super::named_file::IMAGES;
 use super::tree::Node;
 use crate::error::{has_extension, nearest};

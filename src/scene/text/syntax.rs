@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::mistake::Mistake;
-use super::slips::{heading, loose_list, slip};
+use super::toml_slips::{heading, loose_list, slip};
 use crate::error::nearest;
 
 /// Explains the error of reading a text as TOML.

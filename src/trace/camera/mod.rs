@@ -1,14 +1,14 @@
 //! Paths from the camera. They pass direct light, gathered photons and light vertices to the sensor.
 
-mod aimed;
-mod aimed_samples;
+mod aimed_scattering;
 mod catcher;
 mod direct;
 mod emitter_hit;
+mod highlight_samples;
 mod layer_sample;
+mod light_vertex_gathering;
 mod numbers;
 mod path_tracer;
-mod resampling;
 mod sensor;
 mod surface;
 

@@ -2,14 +2,14 @@
 
 use std::rc::Rc;
 
-use super::aimed::{albedo, may_aim, scatter_aimed};
-use super::aimed_samples::add_aimed;
+use super::aimed_scattering::{albedo, may_aim, scatter_aimed};
 use super::catcher;
 use super::direct::DirectLighting;
 use super::emitter_hit::EmitterHit;
+use super::highlight_samples::add_aimed;
 use super::layer_sample::LayerSample;
+use super::light_vertex_gathering::Resampling;
 use super::numbers;
-use super::resampling::Resampling;
 use super::sensor::{Sensor, SensorEvent};
 use super::surface::{FirstHit, PathContinuation, Surface, Through};
 use crate::film::{Layer, Sample};
@@ -25,7 +25,7 @@ use crate::trace::photon::{GatherPoint, LightVertices, PhotonMap, gather, holds_
 use crate::trace::received_light::ReceivedLight;
 use crate::trace::walk::{
     Audit, DyeExcitation, Excitation, FoundLight, Interaction, ObjectSet, OutgoingPath, PassThrough, Path, PathKind,
-    Polarization, Polarized, ScatterSample, SurfaceHit, Walker, shading, straight,
+    Polarization, Polarized, ScatterSample, SurfaceHit, Walker, pass_through, shading,
 };
 use crate::trace::{Method, Polarizing, Transport, World};
 
@@ -214,7 +214,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         through: Option<&PassThrough<N, P>>,
         first: &mut Option<SurfacePoint>,
     ) -> FirstHit {
-        let straight::Cutout { is_hit, weight, .. } = straight::hit(self.walker.world, draw, sampler, path, through);
+        let pass_through::Cutout { is_hit, weight, .. } =
+            pass_through::hit(self.walker.world, draw, sampler, path, through);
         if let Some(layers) = &mut self.sensor.layers {
             layers.choose(is_hit.then_some(surface_hit.hit.object), weight);
         }
@@ -232,8 +233,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         // Beyond holes and panes together, light has the mean polarization of both.
         let is_mean = |straight: &Straight<N>| *polarization == Polarizing::Traced && !straight.panes.is_zero();
         let Some(whole) = through.filter(|through| is_by_chance && !is_mean(&through.straight)) else { return 1.0 };
-        let straight::Cutout { is_hit, chance, .. } =
-            straight::hit(self.walker.world, draw, sampler, path, Some(&whole));
+        let pass_through::Cutout { is_hit, chance, .. } =
+            pass_through::hit(self.walker.world, draw, sampler, path, Some(&whole));
         let before = path.throughput;
         let (holes, panes) = if is_hit { (Lanes::ZERO, whole.straight.panes) } else { (Lanes::ONE, Lanes::ZERO) };
         if !is_hit {

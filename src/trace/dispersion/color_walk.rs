@@ -5,7 +5,7 @@ use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Table};
 use crate::trace::media::Media;
-use crate::trace::walk::{SurfaceHit, shading, straight};
+use crate::trace::walk::{SurfaceHit, pass_through, shading};
 use crate::trace::{World, media};
 
 /// Number of surfaces after which a ray is given up. Total reflection keeps one in six rays in a diamond for more than
@@ -186,7 +186,7 @@ impl Colors<'_> {
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(&surface_hit.point, wo);
         let inside = walk.media.inside(&world.scene);
-        if walk.choose_branch(straight::holes(world, draw, ray, inside, surface_hit)[0].into(), false, choice) {
+        if walk.choose_branch(pass_through::holes(world, draw, ray, inside, surface_hit)[0].into(), false, choice) {
             return Next::Straight;
         }
         match world.scene.material_of(surface_hit.hit.object) {

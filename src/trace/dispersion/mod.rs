@@ -1,8 +1,8 @@
 //! How far dispersion pulls colors apart, and how light is tinted on its way: rays of few colors over smooth surfaces.
 
-mod apart;
+mod caustic_separation;
+mod color_separation;
 mod color_walk;
-mod lit;
 mod route;
 mod route_walk;
 mod routes;

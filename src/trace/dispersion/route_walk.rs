@@ -5,7 +5,7 @@ use crate::light::{Light, LightId};
 use crate::material::{Facets, Interface, Material, reflect};
 use crate::math::{DVec3, Ray, Sampler, sample_cosine_about};
 use crate::spectrum::{Draw, Lanes, Table};
-use crate::trace::walk::{SurfaceHit, shading, straight};
+use crate::trace::walk::{SurfaceHit, pass_through, shading};
 use crate::trace::{World, media};
 
 /// Maximum number of surfaces that are hit for one pixel.
@@ -162,7 +162,7 @@ impl<'a> RouteWalker<'a> {
     /// Decides at random whether a hole lets the route pass.
     fn passes_hole(&self, walk: &RouteWalk, surface_hit: &SurfaceHit, u: f64) -> bool {
         let inside = walk.media.inside(&self.world.scene);
-        u < straight::holes(self.world, &self.draw, &walk.ray, inside, surface_hit)[1].into()
+        u < pass_through::holes(self.world, &self.draw, &walk.ray, inside, surface_hit)[1].into()
     }
 
     /// Returns the part of the material that is hit, at random if there are several.

@@ -5,7 +5,7 @@
 //! number of rays that does not depend on the number of pixels. Beams of rays: Amanatides 1984, *Ray Tracing with
 //! Cones*; Heckbert & Hanrahan 1984, *Beam Tracing Polygonal Objects*.
 
-use super::apart::{color_separation, is_dark, separated_share};
+use super::color_separation::{color_separation, is_dark, separated_share};
 use super::color_walk::{CameraRays, ColorWalk, Colors, FollowedBranch};
 use super::targets::{SEEN_PIXELS, Targets};
 use crate::math::{DVec2, DVec3, Sampler};

@@ -1,7 +1,7 @@
 //! How far dispersion pulls colors apart, measured by rays of two colors that start the same way.
 
+use super::caustic_separation::lit_pixels;
 use super::color_walk::Colors;
-use super::lit::lit_pixels;
 use super::search::search;
 use super::targets::{SEEN_PIXELS, Targets};
 use crate::spectrum::Draw;

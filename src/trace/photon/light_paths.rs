@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use super::batch::{PHOTON_TRANSPORT, batches_of_pass, trace_batch};
 use super::follow::{Photon, PhotonHit, Surfaces, follow_photon};
 use super::light_vertices::{LightVertex, LightVertices, holds_vertices};
-use super::usefulness::{DiffusePlace, is_seen, places, usefulness};
+use super::vertex_visibility::{DiffusePlace, is_seen, places, usefulness};
 use crate::film::Layer;
 use crate::light::{LeSample, Light, LightId};
 use crate::material::Material;

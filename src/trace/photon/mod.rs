@@ -10,7 +10,7 @@ mod light_vertices;
 mod pass_light;
 mod photon_map;
 mod splat;
-mod usefulness;
+mod vertex_visibility;
 
 pub use batch::{Batch, batches, batches_of_pass, trace_batch};
 pub use gather::{GatherPoint, Gathered, PhotonShare, PhotonSpectrum, gather};

@@ -1,7 +1,7 @@
 //! Learns from a few camera samples what lights a room.
 
+use super::camera_events::collect_events;
 use super::clusters::{Cluster, Rectangle, clusters};
-use super::findings::collect_events;
 use super::openings::Openings;
 use super::room::{Room, weight};
 use crate::math::{DVec3, Ray};

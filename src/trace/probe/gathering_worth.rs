@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::pilot::SampleWorth;
-use super::reach::{has_photon_among, has_photon_near, mean_photons_examined};
+use super::reached_places::{has_photon_among, has_photon_near, mean_photons_examined};
 use crate::math::{DVec3, Sampler};
 use crate::spectrum::apply;
 use crate::trace::camera::{PathTracer, SensorEvent};

@@ -1,6 +1,6 @@
 //! Prepares a world for rendering: tabulates it, and lets a few paths and photons learn where to look.
 
-use super::sent_ahead::guide_photons;
+use super::photon_pilot::guide_photons;
 use super::visible_caps::learn_visible_caps;
 use crate::scene::Scene;
 use crate::spectrum::Curve;

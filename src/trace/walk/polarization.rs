@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use super::excitation::Excitation;
 use super::interaction::Interaction;
-use super::slots::Slots;
+use super::reusing_stack::Slots;
 use crate::light::Light;
 use crate::material::{Branch, Material, ScatterContext, Straight};
 use crate::math::{DVec3, Ray};

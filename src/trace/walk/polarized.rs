@@ -8,7 +8,7 @@
 
 use super::interaction::Interaction;
 use super::polarization::{FoundLight, Polarization, SeenPhoton};
-use super::slots::Slots;
+use super::reusing_stack::Slots;
 use crate::light::Light;
 use crate::material::{Branch, Material, Scatter, ScatterContext, Straight};
 use crate::math::{DVec3, Ray};

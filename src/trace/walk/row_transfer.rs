@@ -1,6 +1,6 @@
 //! The ways in which light leaves a surface, and how rows of Stokes weights change along them.
 
-use super::change::Change;
+use super::row_change::Change;
 use crate::material::Mueller;
 use crate::math::DVec3;
 use crate::spectrum::{LaneSet, Lanes};

@@ -9,13 +9,13 @@
 
 use std::array::from_fn;
 
-use super::change::{Change, Weights};
 use super::interaction::Interaction;
 use super::polarization::{FoundLight, Polarization, SeenPhoton};
+use super::reusing_stack::Slots;
 use super::rotation::{Rotation, perpendicular};
+use super::row_change::{Change, Weights};
 use super::row_transfer::{Exitant, FoldedLight, RowTransfer};
 use super::shading;
-use super::slots::Slots;
 use crate::light::Light;
 use crate::material::{Block, Branch, Incoming, Material, Mueller, Scatter, ScatterContext, Straight};
 use crate::math::{DVec3, Frame, Ray};

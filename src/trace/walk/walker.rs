@@ -7,9 +7,9 @@ use super::interaction::{Interaction, SurfaceHit};
 use super::path::{ObjectSet, Path, PathKind, ScatterSample};
 use super::polarization::{PassThrough, Polarization};
 use super::polarized::Polarized;
+use super::reusing_stack::Slots;
 use super::roulette::{LONG_PATH, play_roulette};
-use super::slots::Slots;
-use super::{shading, straight};
+use super::{pass_through, shading};
 use crate::material::{Branch, Lobes, Straight};
 use crate::math::Sampler;
 use crate::shape::SurfacePoint;
@@ -92,7 +92,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     #[inline(always)]
     pub fn straight(&self, path: &Path<N, P>, draw: &Draw<N>, surface_hit: &SurfaceHit) -> Option<PassThrough<N, P>> {
         let lets_through = self.world.is_see_through(surface_hit.hit.object);
-        if lets_through { straight::pass_through_of_path(self.world, draw, path, surface_hit) } else { None }
+        if lets_through { pass_through::pass_through_of_path(self.world, draw, path, surface_hit) } else { None }
     }
 
     /// Returns the media at the surface that a path has hit.

@@ -1,6 +1,6 @@
 //! What the plan needs to know about a photon map before it is made.
 
-use super::findings::collect_events;
+use super::camera_events::collect_events;
 use crate::math::{DVec3, median};
 use crate::trace::World;
 use crate::trace::camera::SensorEvent;

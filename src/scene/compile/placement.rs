@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
+use super::material_parts::Materials;
 use super::object::ObjectDraft;
-use super::parts::Materials;
 use super::shape::check_size;
 use crate::material::Material;
 use crate::math::{DVec3, Transform};

@@ -11,8 +11,8 @@ use abbe::{Advance, Error, ImageError, Options, Rendering, Result, Resumed, Scen
 use abbe::{has_finished, is_checkpoint};
 use clap::Args;
 
+use super::error_text::problem;
 use super::messages::{error_so_far, say, warn};
-use super::problem::problem;
 use super::progress::Progress;
 use super::signals::{self, is_stopped};
 

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::inside_out::winding_number;
-use super::place::PlacedObjects;
+use super::placement::PlacedObjects;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::checks::hit_from_outside;
 use crate::scene::text::and_more;

@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use super::words::describe_effort;
+use super::format::describe_effort;
 use crate::light::Light;
 use crate::spectrum::Table;
 use crate::trace::{

@@ -1,7 +1,7 @@
 //! Decides how the light of a scene is found.
 
-use super::between::{IndirectMethod, choose_indirect};
 use super::caustics::{self, CausticChoice, SeenPhotons};
+use super::indirect::{IndirectMethod, choose_indirect};
 use super::photon_map;
 use crate::light::Light;
 use crate::scene::Scene;
