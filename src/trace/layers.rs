@@ -21,7 +21,7 @@ pub(super) struct Layers {
     /// For each layer that exists, where its numbers begin, if it is requested.
     offsets: Vec<Option<usize>>,
     /// Length of a row.
-    pub(super) numbers: usize,
+    pub(super) row_len: usize,
     /// The group of each light, and the names of the groups' layers.
     group_of: Vec<usize>,
     pub(super) groups: Vec<String>,
@@ -110,9 +110,9 @@ impl Layers {
         }
         for &layer in &scene.format.layers {
             if layers.at(layer).is_none() {
-                layers.offsets[layer as usize] = Some(layers.numbers);
+                layers.offsets[layer as usize] = Some(layers.row_len);
                 layers.requested.push(layer);
-                layers.numbers += match layer {
+                layers.row_len += match layer {
                     Layer::Lights => 3 * layers.groups.len(),
                     Layer::HalfA | Layer::HalfB => HALF_VALUES,
                     Layer::Polarization => STOKES_VALUES,
@@ -123,12 +123,12 @@ impl Layers {
             }
         }
         if scene.has_shadow_catchers() {
-            layers.caught = Some(layers.numbers);
-            layers.numbers += CAUGHT_VALUES;
+            layers.caught = Some(layers.row_len);
+            layers.row_len += CAUGHT_VALUES;
         }
         if let Some(bands) = scene.format.spectral {
-            layers.spectrum = Spectrum::new(scene, basis, bands, layers.numbers);
-            layers.numbers += layers.spectrum.as_ref().map_or(0, Spectrum::numbers);
+            layers.spectrum = Spectrum::new(scene, basis, bands, layers.row_len);
+            layers.row_len += layers.spectrum.as_ref().map_or(0, Spectrum::numbers);
         }
         let mattes = layers.requested.iter().filter(|layer| layer.is_matte());
         layers.ids = mattes.map(|&matte| (matte, names(scene, matte).map(id).collect())).collect();

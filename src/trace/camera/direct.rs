@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::numbers::{FURTHER_LIGHTS, MORE_DIGITS};
+use super::dimensions::{FURTHER_LIGHTS, MORE_DIGITS};
 use super::sensor::Sensor;
 use crate::light::{LightId, LightSample, SampledLight};
 use crate::material::Lobes;
@@ -158,7 +158,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let LightSample { ray, distance, object, part, .. } = sample;
         let at = self.lit_by(side, *light, ray);
         let context = &at.context;
-        let ends = RayEnds { left: self.path.left, light: *object, part: *part };
+        let ends = RayEnds { left: self.path.last_primitive, light: *object, part: *part };
         let (distance, inside, last_occluder) = (*distance, side.inside, self.last_occluder);
         let occluders = Occluders::Objects(self.path.object_set);
         let segment = VisibilityTest { ray, distance, ends, inside, occluders, last_occluder };
@@ -180,10 +180,14 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let received = ReceivedLight { source: light, draw: context.draw, lanes, parted: side.parted };
         let found_light = FoundLight::new(world, &received, self.excitation);
         let (rgb, dispersed) = (found_light.rgb, found_light.dispersed);
-        let moved = self.path.polarization.change_along(at, wi, on_its_way, &found_light);
+        let polarization_change = self.path.polarization.change_along(at, wi, on_its_way, &found_light);
         let (light, found, bounces) = (Some(light), FoundBy::Sampled, self.path.bounces + 1);
         let first = self.path.first_lobe(world, self.at, wi, side.normal != self.at.flat);
-        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &found_light, on_its_way);
+        sensor.receive(
+            Contribution { light, found, rgb, polarization_change, first, bounces, dispersed },
+            &found_light,
+            on_its_way,
+        );
     }
 
     /// Returns the factor on a light's emission and the BSDF. If the path's own next direction may hit the light, it is

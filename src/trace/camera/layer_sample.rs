@@ -1,6 +1,6 @@
 //! What one camera sample contributes to the layers.
 
-use super::numbers::ALBEDO;
+use super::dimensions::ALBEDO;
 use super::surface::Surface;
 use crate::film::{FirstSurface, Layer};
 use crate::material::Branch;
@@ -41,8 +41,8 @@ pub struct SampleRow<'a> {
 impl<'a, const N: usize> LayerSample<'a, N> {
     /// Returns `None` if no layers are requested.
     pub fn of(world: &'a World) -> Option<Self> {
-        let Layers { numbers, .. } = world.layers;
-        let (row, spectrum) = (vec![0.0; numbers], world.layers.spectrum.as_ref().map(SpectrumSample::new));
+        let Layers { row_len, .. } = world.layers;
+        let (row, spectrum) = (vec![0.0; row_len], world.layers.spectrum.as_ref().map(SpectrumSample::new));
         let (share, chance, object, branches) = (0.0, 1.0, None, Vec::new());
         let is_aimed = false;
         (!world.layers.is_empty()).then_some(Self { world, row, spectrum, share, chance, object, branches, is_aimed })
@@ -56,7 +56,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         self.object = None;
     }
 
-    pub fn left(&self) -> SampleRow<'_> {
+    pub fn sample_row(&self) -> SampleRow<'_> {
         SampleRow { row: &self.row, object: self.object }
     }
 

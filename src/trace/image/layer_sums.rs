@@ -28,7 +28,7 @@ impl LayerSums {
         match layers.is_empty() {
             true => Self::default(),
             false => Self {
-                rows: [pixels, if is_signed { pixels } else { 0 }].map(|rows| vec![0.0; rows * layers.numbers]),
+                rows: [pixels, if is_signed { pixels } else { 0 }].map(|rows| vec![0.0; rows * layers.row_len]),
                 depths: vec![f64::INFINITY; pixels],
                 covered: if layers.ids.is_empty() { Coverage::default() } else { Coverage::new(pixels) },
             },
@@ -44,7 +44,7 @@ impl LayerSums {
     /// Adds a sample of a pixel: its contribution to the image and to the layers. `early` samples are those of the
     /// first half. Each half is spread as evenly as all samples are, which every other sample would not be.
     pub fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, sample_row: &SampleRow) {
-        let row = &mut self.rows[usize::from(sample.is_subtracted)][pixel * layers.numbers..][..layers.numbers];
+        let row = &mut self.rows[usize::from(sample.is_subtracted)][pixel * layers.row_len..][..layers.row_len];
         if let Some(object) = sample_row.object.filter(|_| !layers.ids.is_empty() && !sample.is_subtracted) {
             self.covered.add(pixel, object);
         }
@@ -83,13 +83,13 @@ impl LayerSums {
 
     /// Returns the row of a pixel, and that of its samples that are subtracted, which may be empty.
     pub fn rows(&self, layers: &Layers, pixel: usize) -> [&[f64]; 2] {
-        let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
+        let range = pixel * layers.row_len..(pixel + 1) * layers.row_len;
         self.rows.each_ref().map(|rows| rows.get(range.clone()).unwrap_or_default())
     }
 
     /// Returns the row of a pixel, and that of its samples that are subtracted, to add to them.
     pub fn rows_mut(&mut self, layers: &Layers, pixel: usize) -> [&mut [f64]; 2] {
-        let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
+        let range = pixel * layers.row_len..(pixel + 1) * layers.row_len;
         self.rows.each_mut().map(|rows| rows.get_mut(range.clone()).unwrap_or_default())
     }
 

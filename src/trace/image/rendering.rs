@@ -392,7 +392,7 @@ impl<'a> Rendering<'a> {
     fn stats_of(&self, tile: &Tile, splat_weight: f64) -> Stats {
         let mut stats = tile.stats;
         let samples = f64::from(self.samples()) * splat_weight;
-        stats.polarization += samples * tile.splatted.moved;
+        stats.polarization += samples * tile.splatted.polarization_change;
         stats.light += samples * tile.splatted.pixels.iter().map(|&rgb| self.world().amount(rgb)).sum::<f64>();
         stats
     }

@@ -25,7 +25,7 @@ fn write_pixel(values: &mut TileValues, world: &World, tile: &Tile, splat_weight
     if layers.is_empty() {
         return;
     }
-    let (sums, numbers) = (tile.layers.rows(layers, place), place * layers.numbers..(place + 1) * layers.numbers);
+    let (sums, numbers) = (tile.layers.rows(layers, place), place * layers.row_len..(place + 1) * layers.row_len);
     let splatted = tile.splatted.layers.get(numbers).unwrap_or_default();
     let splatted = &*scaled(splatted, splat_weights.image);
     let (covered, rgb) = (&tile.layers.covered, [sum.rgb(), subtracted.rgb()]);

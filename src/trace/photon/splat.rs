@@ -168,7 +168,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
             true => world.seen_media(&ray).inside(&world.scene),
             false => local_medium,
         };
-        let ends = RayEnds { left: path.left, ..RayEnds::default() };
+        let ends = RayEnds { left: path.last_primitive, ..RayEnds::default() };
         let (occluders, last_occluder) = (Occluders::Seen(self.seen_through), &self.walker.last_occluder);
         let segment = VisibilityTest { ray: &ray, distance, ends, inside, occluders, last_occluder };
         let (arriving, polarization) = segment.arriving_light(world, draw, start, light)?;

@@ -67,12 +67,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         self.stats.rays += 1;
         let skips_hidden = self.world.hides_objects && path.kind.is_from_camera() && path.object_set == ObjectSet::All;
         let hit = match path.object_set {
-            ObjectSet::All if skips_hidden => self.world.scene.intersect_seen(&path.ray, path.left),
-            ObjectSet::All => self.world.scene.intersect_from(&path.ray, path.left),
-            ObjectSet::Plate => self.world.scene.intersect_plate(&path.ray, path.left, path.kind.is_from_camera()),
+            ObjectSet::All if skips_hidden => self.world.scene.intersect_seen(&path.ray, path.last_primitive),
+            ObjectSet::All => self.world.scene.intersect_from(&path.ray, path.last_primitive),
+            ObjectSet::Plate => {
+                self.world.scene.intersect_plate(&path.ray, path.last_primitive, path.kind.is_from_camera())
+            }
         };
         let skips_hidden_media = skips_hidden && self.world.has_media;
-        if skips_hidden_media && path.left.is_some() {
+        if skips_hidden_media && path.last_primitive.is_some() {
             path.switch_media(self.world, draw, self.world.media_seen_at(path.ray.origin));
         }
         let before = path.throughput;
@@ -84,7 +86,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         if skips_hidden_media {
             path.switch_media(self.world, draw, path.media.combined_with(&self.world.media_hidden_at(&path.ray, &hit)));
         }
-        path.left = Some(hit.primitive());
+        path.last_primitive = Some(hit.primitive());
         Some(SurfaceHit::new(self.world, &path.ray, hit))
     }
 
@@ -117,7 +119,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             kind == PathKind::Smooth && self.world.is_photon_target(surface_hit.hit.object, surface_hit.point.position);
         let next = self.pending.add(|| *path);
         // No light was sampled through this surface, so what the path hits beyond counts in full.
-        let (key, media) = (path.key.child(0), path.media.beyond(boundary));
+        let (key, media) = (path.key.child(0), path.media.after_crossing(boundary));
         *next = Path { scatter: None, key, media, kind, left_to_photons, ..*path };
         next.ray = surface_hit.point.leave(path.ray.direction);
         (next.vertices, next.hidden_vertices) = (path.vertices + 1, path.hidden_vertices + 1);
@@ -325,10 +327,10 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         let counts_as_wide = wide && at.context.lobes != Lobes::NARROW;
         let next = pending.add(|| **path);
         next.ray = at.point.leave(branch.wi);
-        next.left = path.left;
+        next.last_primitive = path.last_primitive;
         next.throughput = path.throughput.through(branch.share).scaled(factor);
         (next.eta_scale, next.aiming_factor) = (path.eta_scale * branch.eta_scale, self.aiming_factor(branch));
-        next.media = if crosses { path.media.beyond(&at.boundary) } else { path.media };
+        next.media = if crosses { path.media.after_crossing(&at.boundary) } else { path.media };
         next.parted = path.parted || (at.parts && crosses);
         next.key = path.key.child(number);
         (next.vertices, next.hidden_vertices) = (path.vertices, path.hidden_vertices);
