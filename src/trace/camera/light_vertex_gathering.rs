@@ -62,7 +62,7 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         let (distance, inside, last_occluder) = (distance - margin, at.boundary.here, self.last_occluder);
         let occluders = Occluders::Objects(ObjectSet::All);
         let segment = VisibilityTest { ray: &ray, distance, ends, inside, occluders, last_occluder };
-        let toward = || self.path.polarization.toward(at, direction, &mut bsdf_cos);
+        let toward = || self.path.polarization.toward_light(at, direction, &mut bsdf_cos);
         let (arriving, on_its_way) = segment.arriving_light(world, at.context.draw, toward, || vertex.leaving)?;
         let factor = factor * cos / (distance_squared + self.vertices.near_squared());
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);

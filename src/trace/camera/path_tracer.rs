@@ -68,7 +68,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     pub fn with_layers(mut self) -> Self {
         let world = self.walker.world;
         self.sensor.layers = LayerSample::of(world);
-        self.walker.audit = world.layers.at(Layer::Residual).map(|_| Audit::new(world));
+        self.walker.audit = world.layers.offset(Layer::Residual).map(|_| Audit::new(world));
         self
     }
 
@@ -337,12 +337,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     #[inline]
     fn follow_dyes(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler, must_pass: bool) -> f64 {
         let world = self.walker.world;
-        let Some(dyes) = world.dyes.as_ref().filter(|dyes| !dyes.of(&world.scene, at.object).is_empty()) else {
+        let Some(dyes) = world.dyes.as_ref().filter(|dyes| !dyes.of_object(&world.scene, at.object).is_empty()) else {
             return 1.0;
         };
         let all = must_pass || self.walker.follows_all(path, at.context.draw);
         let seen = self.excitation(path);
-        let excited = DyeExcitation { world, dyes, path, at, all, seen: seen.as_deref() }.sample_paths(sampler);
+        let excited = DyeExcitation { world, dyes, path, at, follows_all: all, excitation: seen.as_deref() }
+            .sample_paths(sampler);
         for (excited_path, excitation) in excited.paths {
             let excitation = Rc::new(excitation);
             let path = Path { excitation: Some(self.excitations.len() as u32), ..excited_path };
@@ -365,7 +366,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let material = at.material;
         let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
         let bright = world.bright.as_ref().filter(|_| may_aim(material));
-        let aiming = bright.and_then(|bright| bright.at(at.point.position, at.flat, || albedo(at)));
+        let aiming = bright.and_then(|bright| bright.aiming(at.point.position, at.flat, || albedo(at)));
         let (mut u, mut scatter) = ([0.0; 4], None);
         if at.lobes.is_wide() {
             u = dimensions::scatter(sampler, path);

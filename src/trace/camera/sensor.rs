@@ -84,7 +84,7 @@ impl<'a, const N: usize> Sensor<'a, N> {
                 None => layers.receive(&contribution, received, polarized.stokes(), factor),
                 Some(dye) => {
                     let stokes = dye.polarization.stokes();
-                    dye.seen(world, received, |seen| layers.receive(&contribution, seen, stokes, factor));
+                    dye.with_received(world, received, |seen| layers.receive(&contribution, seen, stokes, factor));
                 }
             }
         }

@@ -114,7 +114,7 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
         world.layers.add_stokes(row, **stokes, weight);
     }
     if let (Some(spectrum), Some(bands)) = (&world.layers.spectrum, &splat.bands) {
-        let sums = row[spectrum.at..].iter_mut().zip(bands.iter());
+        let sums = row[spectrum.offset..].iter_mut().zip(bands.iter());
         sums.for_each(|(sum, &light)| *sum += weight * f64::from(light));
     }
     world.layers.add_to(Layer::Variance, row, rgb.map(|x| x * x));
@@ -160,7 +160,7 @@ fn send_remaining<const N: usize, P: Polarization<N>>(
                 true => record(pixel, splat),
                 false => sending.stats.non_finite += 1,
             };
-            sent.kept.iter().for_each(|placed| placed.spread(world.scene.film, &mut record_finite));
+            sent.records.iter().for_each(|placed| placed.spread(world.scene.film, &mut record_finite));
         }
     }
     true

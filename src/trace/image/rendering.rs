@@ -218,8 +218,8 @@ impl<'a> Rendering<'a> {
     ) -> Advance {
         let stopped = AtomicBool::new(false);
         let latched_stop = || {
-            let due = stopped.load(Ordering::Relaxed) || should_stop();
-            stopped.fetch_or(due, Ordering::Relaxed) || due
+            let is_stopped = stopped.load(Ordering::Relaxed) || should_stop();
+            stopped.fetch_or(is_stopped, Ordering::Relaxed) || is_stopped
         };
         let callbacks = Callbacks { progress, should_stop: &latched_stop };
         if !self.begin_pass() {

@@ -131,7 +131,7 @@ impl Tile {
         let mut blurs = [PassSum::default(), PassSum::default()];
         let measures_blur = light.photons.as_ref().is_some_and(|photons| photons.half_blur.is_some());
         let rate = world.rate(pixel);
-        let caught_before = pass.replicate.and_then(|_| self.layers.caught(&world.layers, place));
+        let caught_before = pass.replicate.and_then(|_| self.layers.catcher_luminance(&world.layers, place));
         for number in rate.own_numbers(&pass.numbers) {
             let average_number = rate.average_number(number);
             tracer.light_vertices = light.vertices(average_number - pass.numbers.start);
@@ -155,9 +155,9 @@ impl Tile {
         }
         if let Some(replicate) = pass.replicate {
             self.replicates.add(place, replicate, sums.each_ref(), blurs.each_ref());
-            let caught = self.layers.caught(&world.layers, place);
+            let caught = self.layers.catcher_luminance(&world.layers, place);
             if let (Some(after), Some(before)) = (caught, caught_before) {
-                self.replicates.add_alpha(place, replicate, sums.each_ref(), after.since(before));
+                self.replicates.add_alpha(place, replicate, sums.each_ref(), after.minus(before));
             }
         }
         let [added, subtracted] = sums;

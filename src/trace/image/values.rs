@@ -35,8 +35,8 @@ fn write_pixel(values: &mut TileValues, world: &World, tile: &Tile, splat_weight
     if let Some(spectrum) = &layers.spectrum {
         pixel_sums.write_spectrum(spectrum, &mut values.spectral);
     }
-    if let Some(caught) = layers.caught(sums[0], splatted, weights.added()) {
-        let alpha = f64::from(pixel.alpha) + layers.caught_luminance(&caught).coverage();
+    if let Some(caught) = layers.catcher_light(sums[0], splatted, weights.added()) {
+        let alpha = f64::from(pixel.alpha) + layers.catcher_luminance(&caught).coverage();
         pixel.alpha = alpha.min(1.0) as f32;
     }
 }

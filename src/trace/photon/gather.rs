@@ -199,7 +199,9 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         let received = ReceivedLight { source: payload.light, draw, lanes: &lanes, parted };
         let ReceivedPhoton { rgb, stokes, spectrum } = match excitation {
             None => ReceivedPhoton::new(world, &received, joined.stokes()),
-            Some(dye) => dye.seen(world, &received, |seen| ReceivedPhoton::new(world, seen, dye.polarization.stokes())),
+            Some(dye) => {
+                dye.with_received(world, &received, |seen| ReceivedPhoton::new(world, seen, dye.polarization.stokes()))
+            }
         };
         let contribution = center.contribution(photon, payload.light, rgb, parted);
         let part = PhotonShare { contribution, stokes, spectrum, factor: density };
@@ -233,8 +235,8 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
                 ReceivedPhoton { rgb: *color, stokes, spectrum: PhotonSpectrum::SingleLane(*wavelength) }
             }
             Some(dye) => {
-                let brightness = weight * dye.worth(world, *light, wavelength);
-                dye.seen_of(brightness, |seen| ReceivedPhoton::new(world, seen, dye.polarization.stokes()))
+                let brightness = weight * dye.brightness(world, *light, wavelength);
+                dye.with_brightness(brightness, |seen| ReceivedPhoton::new(world, seen, dye.polarization.stokes()))
             }
         };
         let contribution = center.contribution(photon, *light, rgb, true);

@@ -229,6 +229,6 @@ fn pass_through_of_ray<const N: usize, P: Polarization<N>>(
     let context = context(world, draw, wo, normal, uv, present, [inside; 2]);
     let material = world.scene.material_of(hit.object);
     let mut straight = material.straight(&context)?;
-    let polarization = polarization.through(material, &context, &mut straight);
+    let polarization = polarization.pass(material, &context, &mut straight);
     Some(PassThrough { straight, polarization })
 }

@@ -26,7 +26,7 @@ pub struct Walker<'a, const N: usize, P: Polarization<N> = Polarized> {
     pub pending: Slots<Path<N, P>>,
     pub branches: Vec<Branch<N>>,
     /// How polarization changes along each of the branches, where it is traced.
-    ways: Slots<P::RowTransfer>,
+    transfers: Slots<P::RowTransfer>,
     /// The object that last occluded a light, which is tested first for the next one.
     pub last_occluder: Cell<Option<u32>>,
     pub stats: Stats,
@@ -53,7 +53,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             transport,
             pending: Slots::new(),
             branches: Vec::new(),
-            ways: Slots::new(),
+            transfers: Slots::new(),
             last_occluder: Cell::new(None),
             stats: Stats::default(),
             audit: None,
@@ -135,14 +135,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     /// Converts the shares of the branches to those of the path's light, which may be polarized.
     #[inline(always)]
     pub fn polarize(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
-        path.polarization.split(at, &mut self.branches, &mut self.ways);
+        path.polarization.split(at, &mut self.branches, &mut self.transfers);
     }
 
     /// Polarizes the light of branches that is followed forward, by shading normals that depend on the viewer.
     pub fn polarize_forward(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
-        self.ways.clear();
+        self.transfers.clear();
         for branch in &mut self.branches {
-            path.polarization.forward(&at.viewed_from(branch.wi), at.context.wo, &mut branch.share);
+            path.polarization.after_forward_scattering(&at.viewed_from(branch.wi), at.context.wo, &mut branch.share);
         }
     }
 
@@ -151,7 +151,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         let wide = self.branches.iter().filter(|branch| branch.pdf.is_some());
         let left_out = |branch: &Branch<N>| outgoing.weight(branch) * f64::from(outgoing.aiming_factor(branch));
         self.stats.stopped += wide.map(left_out).sum::<f64>() / outgoing.siblings();
-        self.ways.retain(|number| self.branches[number].pdf.is_none());
+        self.transfers.retain(|number| self.branches[number].pdf.is_none());
         self.branches.retain(|branch| branch.pdf.is_none());
     }
 
@@ -180,7 +180,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
                 for (number, branch) in self.branches.iter().enumerate() {
                     match outgoing.weight(branch) {
                         weight if weight < cutoff => self.stats.dropped += weight,
-                        _ => outgoing.add_pending(number, branch, self.ways.get(number), 1.0, &mut self.pending),
+                        _ => outgoing.add_pending(number, branch, self.transfers.get(number), 1.0, &mut self.pending),
                     }
                 }
             }
@@ -216,8 +216,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         let number = chosen.unwrap_or(last);
         if let Some(factor) = play_roulette(total, roulette, outgoing.path.vertices, || u[1]) {
             let factor = factor * total / weight(number);
-            let (branch, way) = (&self.branches[number], self.ways.get(number));
-            outgoing.add_pending(number, branch, way, factor, &mut self.pending);
+            let (branch, transfer) = (&self.branches[number], self.transfers.get(number));
+            outgoing.add_pending(number, branch, transfer, factor, &mut self.pending);
         }
     }
 
@@ -234,7 +234,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             if weight != 0.0
                 && let Some(factor) = play_roulette(roulette_weight, roulette, outgoing.path.vertices, u)
             {
-                outgoing.add_pending(number, branch, self.ways.get(number), factor, &mut self.pending);
+                outgoing.add_pending(number, branch, self.transfers.get(number), factor, &mut self.pending);
             }
         }
     }
@@ -299,7 +299,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         if branch.crosses { self.path.aiming_factor } else { self.path.aiming_factor * branch.eta_scale as f32 }
     }
 
-    /// Adds the pending path along a branch, which is followed with probability 1 / `factor`. `way` is how its
+    /// Adds the pending path along a branch, which is followed with probability 1 / `factor`. `transfer` is how its
     /// polarization changes, if that is known already.
     ///
     /// Paths are large, so it is built in place.
@@ -308,7 +308,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         &self,
         number: usize,
         branch: &Branch<N>,
-        way: Option<&P::RowTransfer>,
+        transfer: Option<&P::RowTransfer>,
         factor: f64,
         pending: &mut Slots<Path<N, P>>,
     ) {
@@ -349,7 +349,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         };
         next.diffuse_left = path.diffuse_left - u32::from((wide || self.all_diffuse) && at.lobes.is_diffuse());
         next.scatter = branch.pdf.and_then(|pdf| self.scatter.map(|scatter| scatter.with_pdf(pdf, crosses)));
-        next.polarization.become_along(&path.polarization, at, branch, way);
+        next.polarization.follow(&path.polarization, at, branch, transfer);
         next.bounces = path.bounces + 1;
         next.is_seen = path.is_seen && !wide && !at.lobes.is_wide();
         next.object_set = path.object_set;
