@@ -42,7 +42,7 @@ fn print_lines(lines: Result<Vec<String>>) -> Result<ExitCode> {
 
 /// Checks, plans or renders one frame after another, until one is stopped.
 fn run(jobs: &Jobs) -> Result<ExitCode> {
-    jobs.keep().catch_signals()?;
+    jobs.saving().catch_signals()?;
     if let Some(threads) = jobs.threads() {
         // Planning without a render and writing files use the global threads, as each render has threads of its own.
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
@@ -146,7 +146,7 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     let outputs = Outputs::new(job, scene, [exr, png])?;
     let (images, files) = (outputs.images(), outputs.files());
     let main = images.first().copied().unwrap_or(Path::new("image"));
-    let checkpoint = job.keep.checkpoint(main);
+    let checkpoint = job.saving.checkpoint(main);
     let all: Vec<&Path> = images.iter().copied().chain(checkpoint.as_deref()).chain(outputs.report).collect();
     check_outputs(scene, &all)?;
     if let Some(plan) = &job.options.plan {
@@ -155,25 +155,25 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     check_text_file("--report", "frame.json", outputs.report)?;
     let _folders = Folders::of_files(&all)?;
     let settings = format!("exposure {:?}, stamp {}", job.exposure, job.options.stamp);
-    let mut keep = Saver::new(&job.keep, main, checkpoint, settings)?;
-    if keep.has_finished(scene, &job.options, &files) {
+    let mut saver = Saver::new(&job.saving, main, checkpoint, settings)?;
+    if saver.has_finished(scene, &job.options, &files) {
         return Ok(ExitCode::SUCCESS);
     }
     let mut rendering = progress::during("planning", || Rendering::new(scene, &job.options))?.since(began);
     messages::print_plan(rendering.plan());
-    if !keep.resume(&mut rendering, &files)? {
+    if !saver.resume(&mut rendering, &files)? {
         return Ok(ExitCode::SUCCESS);
     }
     let progress = progress::Progress::new(&rendering);
-    let is_finished = keep.run(&mut rendering, &progress)?;
+    let is_finished = saver.run(&mut rendering, &progress)?;
     if !is_finished {
         drop(progress);
-        keep.say_how_to_resume();
+        saver.say_how_to_resume();
         return Ok(ExitCode::from(signals::STOPPED_CODE));
     }
     let took = progress.finish(rendering.expected());
     let written = outputs.write(&rendering, job.exposure, took);
-    keep.finish(&rendering, &written.files);
+    saver.finish(&rendering, &written.files);
     written.finish()
 }
 
@@ -193,9 +193,9 @@ impl<'j> Outputs<'j> {
         let has_spectra = scene.format.spectral.is_some();
         if exr.is_some_and(is_stdio) {
             check_stdout(has_spectra)?;
-            job.keep.check_stdout()?;
+            job.saving.check_stdout()?;
         }
-        let part = exr.and_then(|exr| job.keep.part(exr));
+        let part = exr.and_then(|exr| job.saving.part(exr));
         let exr = exr.filter(|_| part.is_none());
         let spectral = exr.filter(|_| has_spectra).map(|exr| exr.with_extension("spectral.exr"));
         Ok(Self { exr, part, spectral, png, report: job.report.as_deref() })

@@ -163,7 +163,7 @@ struct Arguments {
     report: Option<PathBuf>,
 
     #[command(flatten)]
-    keep: saving::Flags,
+    saving: saving::Flags,
 
     /// Record in the EXR when it was made, how long that took, and on how many threads. Without it, two runs write the
     /// same bytes
@@ -228,8 +228,8 @@ impl Jobs {
     }
 
     /// Returns the flags for checkpoints, snapshots and parts.
-    pub fn keep(&self) -> &saving::Flags {
-        &self.0.keep
+    pub fn saving(&self) -> &saving::Flags {
+        &self.0.saving
     }
 
     /// Returns one job after another.
@@ -270,7 +270,7 @@ pub struct Job {
     pub output: Output,
     pub exposure: f64,
     pub options: Options,
-    pub keep: saving::Flags,
+    pub saving: saving::Flags,
     /// The file for the report on the render.
     pub report: Option<PathBuf>,
 }
@@ -412,7 +412,7 @@ fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
         return Error::refuse("--exposure brightens only the picture of --png, and --png is not given", help);
     }
     check_png(arguments.png.as_deref())?;
-    arguments.keep.check(noop, with_exr, arguments.png.is_some(), arguments.stamp)?;
+    arguments.saving.check(noop, with_exr, arguments.png.is_some(), arguments.stamp)?;
     if arguments.spectral && !with_exr && arguments.png.is_some() {
         let help = "add --exr, or leave --spectral out";
         return Error::refuse("--spectral writes spectra beside an EXR, and --png alone writes no EXR", help);
@@ -434,10 +434,10 @@ fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
         let message = format!("{flag} and --exr - would both write to standard output");
         return Error::refuse(message, "name the image, as in --exr out/frame.exr");
     }
-    let Arguments { samples, error, time, seed, overscan, crop, layers, spectral, threads, stamp, keep, .. } =
+    let Arguments { samples, error, time, seed, overscan, crop, layers, spectral, threads, stamp, saving, .. } =
         arguments;
     let (exposure, layers) = (arguments.exposure.unwrap_or(0.0), layers.map(|LayerList(layers)| layers));
-    let shard = keep.shard();
+    let shard = saving.shard();
     let options = Options {
         samples,
         error,
@@ -454,7 +454,7 @@ fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
     };
     let report = arguments.report.map(|path| frame_path(&path, frame)).transpose()?;
     let set = frame.map(|frame| format!("set.frame={frame}")).into_iter().chain(arguments.set).collect();
-    Ok(Job { frame, scene, set, output, exposure, options, keep, report })
+    Ok(Job { frame, scene, set, output, exposure, options, saving, report })
 }
 
 /// Tells the scene from the image. `--exr` may take an image, but right before the only path it takes the scene.

@@ -86,7 +86,7 @@ pub struct BlockReader {
     file: BufReader<File>,
     /// The number of bytes of the file that have been read, and that are left.
     place: u64,
-    left: u64,
+    remaining: u64,
 }
 
 impl BlockReader {
@@ -112,9 +112,9 @@ impl BlockReader {
     pub fn open_at(path: &Path, place: u64) -> Result<Self> {
         let opened = || {
             let mut file = File::open(path)?;
-            let left = file.metadata()?.len().saturating_sub(place);
+            let remaining = file.metadata()?.len().saturating_sub(place);
             file.seek(SeekFrom::Start(place))?;
-            Ok(Self { path: path.to_owned(), file: BufReader::new(file), place, left })
+            Ok(Self { path: path.to_owned(), file: BufReader::new(file), place, remaining })
         };
         opened().map_err(|source| cannot_read(path, source))
     }
@@ -146,7 +146,7 @@ impl BlockReader {
     /// # Errors
     /// [`Error::Decode`] if a block is left, or the end is missing.
     pub fn end(mut self) -> Result<()> {
-        if self.content()?.is_empty() && self.left == 0 { Ok(()) } else { Err(self.damaged()) }
+        if self.content()?.is_empty() && self.remaining == 0 { Ok(()) } else { Err(self.damaged()) }
     }
 
     fn content(&mut self) -> Result<Vec<u8>> {
@@ -156,7 +156,7 @@ impl BlockReader {
         let sum: [u8; HEAD_BYTES - LENGTH_BYTES] = std::array::from_fn(|i| head[LENGTH_BYTES + i]);
         let bytes = u64::from_le_bytes(length);
         // A corrupted length must not exhaust the memory.
-        if bytes > self.left {
+        if bytes > self.remaining {
             return Err(self.damaged());
         }
         let mut content = vec![0; bytes as usize];
@@ -166,10 +166,10 @@ impl BlockReader {
     }
 
     fn fill(&mut self, bytes: &mut [u8]) -> Result<()> {
-        if bytes.len() as u64 > self.left {
+        if bytes.len() as u64 > self.remaining {
             return Err(self.damaged());
         }
-        self.left -= bytes.len() as u64;
+        self.remaining -= bytes.len() as u64;
         self.place += bytes.len() as u64;
         self.file.read_exact(bytes).map_err(|source| cannot_read(&self.path, source))
     }

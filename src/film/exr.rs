@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::atomic_file::replace_with;
 use super::exr_blocks::{self, CLAMPED_KEY, ScanLinePart};
-use super::exr_column::{Column, Of};
+use super::exr_column::{Column, ColumnContent};
 use super::format::{Compression, Format, Precision};
 use super::image::Film;
 use super::rows::Rows;
@@ -182,14 +182,14 @@ struct Group<'f> {
 
 /// Groups the channels by part. Color channels have 16 bits if `half` is set.
 fn groups<'f>(film: &'f Film, format: &Format, half: bool) -> Vec<Group<'f>> {
-    let mut image = vec![Column::new("A", half, Of::Alpha)];
+    let mut image = vec![Column::new("A", half, ColumnContent::Alpha)];
     image.extend(colors(half));
     let mut groups = vec![Group { name: "image", is_data: false, has_colors: true, columns: image }];
     if format.multipart {
         // Blender does not recognize R, G, B and A as a color if another channel shares their part.
         groups.push(Group { name: "depth", is_data: true, has_colors: false, columns: Vec::new() });
     }
-    groups.last_mut().expect("the image comes first").columns.push(Column::new("Z", false, Of::Depth));
+    groups.last_mut().expect("the image comes first").columns.push(Column::new("Z", false, ColumnContent::Depth));
     for (layer, image) in film.layers.iter().enumerate() {
         if format.multipart {
             let (is_data, has_colors) = (!image.layer.is_color(), image.layer.has_color_space());
@@ -197,7 +197,7 @@ fn groups<'f>(film: &'f Film, format: &Format, half: bool) -> Vec<Group<'f>> {
         }
         let columns = image.layer.channels().iter().enumerate().map(|(channel, name)| {
             let is_half = half && image.layer.may_be_half();
-            Column::new(&format!("{}.{name}", image.name), is_half, Of::Layer { layer, channel })
+            Column::new(&format!("{}.{name}", image.name), is_half, ColumnContent::Layer { layer, channel })
         });
         groups.last_mut().expect("the image comes first").columns.extend(columns);
     }
@@ -206,7 +206,10 @@ fn groups<'f>(film: &'f Film, format: &Format, half: bool) -> Vec<Group<'f>> {
 
 /// Returns the columns of red, green and blue.
 pub(super) fn colors(is_half: bool) -> impl Iterator<Item = Column> {
-    ["R", "G", "B"].into_iter().enumerate().map(move |(number, name)| Column::new(name, is_half, Of::Color(number)))
+    ["R", "G", "B"]
+        .into_iter()
+        .enumerate()
+        .map(move |(number, name)| Column::new(name, is_half, ColumnContent::Color(number)))
 }
 
 /// Returns the bounds of the full image.

@@ -192,7 +192,7 @@ fn pack(
     let mut clamped = 0;
     for row in 0..rows {
         for column in columns {
-            clamped += column.put(film, first + row * width, width, &mut data);
+            clamped += column.append_bytes(film, first + row * width, width, &mut data);
         }
     }
     let (pixel_position, pixel_size) = (Vec2(0, block.rows.start as usize), Vec2(width, rows));

@@ -9,12 +9,12 @@ pub(super) struct Column {
     pub(super) name: Text,
     /// Whether the channel has 16 bits instead of 32.
     pub(super) is_half: bool,
-    pub(super) of: Of,
+    pub(super) content: ColumnContent,
 }
 
 /// A value of a pixel.
 #[derive(Clone, Copy)]
-pub(super) enum Of {
+pub(super) enum ColumnContent {
     Alpha,
     /// Red, green or blue, by index.
     Color(usize),
@@ -32,25 +32,25 @@ pub(super) enum Of {
 }
 
 impl Column {
-    pub(super) fn new(name: &str, is_half: bool, of: Of) -> Self {
-        Self { name: Text::new_or_panic(name), is_half, of }
+    pub(super) fn new(name: &str, is_half: bool, content: ColumnContent) -> Self {
+        Self { name: Text::new_or_panic(name), is_half, content }
     }
 
     /// Appends the bytes of `pixels` pixels, starting at number `first`. Returns how many values exceeded the range of
     /// 16 bits and were clamped.
-    pub(super) fn put(&self, film: &Film, first: usize, pixels: usize, bytes: &mut Vec<u8>) -> u64 {
+    pub(super) fn append_bytes(&self, film: &Film, first: usize, pixels: usize, bytes: &mut Vec<u8>) -> u64 {
         let all = &film.pixels[first..first + pixels];
-        match self.of {
-            Of::Alpha => self.put_all(all.iter().map(|pixel| pixel.alpha), bytes),
-            Of::Color(number) => self.put_all(all.iter().map(|pixel| pixel.rgb[number]), bytes),
-            Of::Depth => self.put_all(all.iter().map(|pixel| pixel.depth), bytes),
-            Of::Layer { layer, channel } => {
+        match self.content {
+            ColumnContent::Alpha => self.put_all(all.iter().map(|pixel| pixel.alpha), bytes),
+            ColumnContent::Color(number) => self.put_all(all.iter().map(|pixel| pixel.rgb[number]), bytes),
+            ColumnContent::Depth => self.put_all(all.iter().map(|pixel| pixel.depth), bytes),
+            ColumnContent::Layer { layer, channel } => {
                 let image = &film.layers[layer];
-                let each = image.numbers();
-                let values = &image.values[first * each..(first + pixels) * each];
-                self.put_all(values.iter().skip(channel).step_by(each).copied(), bytes)
+                let stride = image.numbers();
+                let values = &image.values[first * stride..(first + pixels) * stride];
+                self.put_all(values.iter().skip(channel).step_by(stride).copied(), bytes)
             }
-            Of::Band { component, band } => {
+            ColumnContent::Band { component, band } => {
                 let spectral = film.spectral.as_ref().expect("bands are of a film with spectra");
                 self.put_all((first..first + pixels).map(|pixel| spectral.component(pixel, component)[band]), bytes)
             }

@@ -8,7 +8,7 @@ use exr::prelude::{AttributeValue, ImageAttributes, Text};
 use super::atomic_file::replace_with;
 use super::exr::{Heading, attributes, chromaticities, colors, display_window};
 use super::exr_blocks::{self, ScanLinePart};
-use super::exr_column::{Column, Of};
+use super::exr_column::{Column, ColumnContent};
 use super::format::Compression;
 use super::rows::Rows;
 use crate::error::Result;
@@ -30,7 +30,7 @@ pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) ->
     let bands = (0..spectral.components()).flat_map(|component| {
         let bands = spectral.bands.centers_nm().enumerate();
         bands.map(move |(band, center)| {
-            Column::new(&channel_name(component, center), false, Of::Band { component, band })
+            Column::new(&channel_name(component, center), false, ColumnContent::Band { component, band })
         })
     });
     let columns = colors(false).chain(bands).collect();

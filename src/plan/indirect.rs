@@ -49,8 +49,8 @@ pub(super) fn choose_indirect(world: World, light: Option<RoomLight>, photons: &
 
 impl IndirectMethod<'_> {
     /// Returns the number of photons per camera sample that takes the least time to an error.
-    pub(super) fn photons_of_a_sample(&self) -> f64 {
-        self.noise().photons_of_a_sample(self.photons)
+    pub(super) fn photons_per_sample(&self) -> f64 {
+        self.noise().photons_per_sample(self.photons)
     }
 
     fn noise(&self) -> &PilotNoise {

@@ -67,7 +67,7 @@ impl LitWorld {
         let valid_light = light.filter(|_| light_pass.is_none());
         let indirect = choose_indirect(unlit.with_light_pass(light_pass), valid_light, photons);
         // Choose the best number of photons for the noise that all else leaves.
-        let pass = caustics.as_ref().map(|caustics| caustics.pass(unlit, indirect.photons_of_a_sample()));
+        let pass = caustics.as_ref().map(|caustics| caustics.pass(unlit, indirect.photons_per_sample()));
         let IndirectMethod { mut world, reasons, .. } = indirect;
         if let Some(pass) = pass {
             world = world.with_light_pass(Some(LightPass { map, ..pass }));

@@ -93,12 +93,12 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let probe = probe(&world);
     let times = photon_times(&guided.map_or(world.clone(), |guided| world.clone().guided_by(&guided)));
     let average_probe = Probe { time: probe.time.mul_f64(times_rays), rays: probe.rays * times_rays, ..probe };
-    let (cost, processor_time) = cost(scene, &method, &average_probe, times);
+    let (cost, processor_time) = estimate_cost(scene, &method, &average_probe, times);
     let mut because = vec![cost];
     because.extend(stopping::reason(scene, method.stop.as_ref(), model_error));
     because.extend(describe_memory(scene, &method));
     because.extend(error_line);
-    let left_out: Vec<String> = polarization.left_out.into_iter().chain(lights(scene, &method)).collect();
+    let left_out: Vec<String> = polarization.left_out.into_iter().chain(describe_left_out(scene, &method)).collect();
     because.extend(left_out.iter().cloned());
     let summary_lines = because.len();
     because.extend(decisions);
@@ -147,7 +147,7 @@ fn describe_memory(scene: &Scene<Curve>, method: &Method) -> impl Iterator<Item 
 }
 
 /// Describes which light is left out.
-fn lights(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
+fn describe_left_out(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
     let mut lines = Vec::new();
     let lobes = || scene.materials.iter().map(|named| named.material.lobes());
     let has_wide_lobe = |diffuse| lobes().any(|lobes| lobes.is_wide() && lobes.is_diffuse() == diffuse);
@@ -174,7 +174,7 @@ fn lights(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
 }
 
 /// Estimates the cost of the whole from a few hundred samples.
-fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe, times: PhotonTimes) -> (String, Duration) {
+fn estimate_cost(scene: &Scene<Curve>, method: &Method, probe: &Probe, times: PhotonTimes) -> (String, Duration) {
     let window = scene.film.window();
     let samples = window.pixels() as f64 * f64::from(method.samples);
     let map_photons = method.map().map_or(0, |map| map.all_photons());

@@ -7,30 +7,30 @@ const MIN_PAUSE_FACTOR: u32 = 100;
 #[derive(Debug)]
 pub struct Timer {
     period: Option<Duration>,
-    due: Option<Instant>,
+    deadline: Option<Instant>,
 }
 
 impl Timer {
     /// Creates a timer for work that is repeated after each period, or never if there is none.
     pub fn new(period: Option<Duration>) -> Self {
-        Self { period, due: due(period) }
+        Self { period, deadline: end_of_period(period) }
     }
 
     /// Returns whether the work is due.
     pub fn is_due(&self) -> bool {
-        self.due.is_some_and(|due| Instant::now() >= due)
+        self.deadline.is_some_and(|due| Instant::now() >= due)
     }
 
     /// Does the work, and schedules its next time.
     pub fn run<T>(&mut self, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = work();
-        self.due = due(self.period.map(|period| period.max(start.elapsed() * MIN_PAUSE_FACTOR)));
+        self.deadline = end_of_period(self.period.map(|period| period.max(start.elapsed() * MIN_PAUSE_FACTOR)));
         result
     }
 }
 
 /// Returns the end of a period that starts now, or none if there is no period or its end cannot be represented.
-fn due(period: Option<Duration>) -> Option<Instant> {
+fn end_of_period(period: Option<Duration>) -> Option<Instant> {
     period.and_then(|period| Instant::now().checked_add(period))
 }

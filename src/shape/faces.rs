@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Vertices;
-use super::ears::{MAX_CORNERS, ears};
+use super::ear_clipping::{MAX_CORNERS, clip_ears};
 use crate::math::{DVec2, DVec3};
 
 /// The triangles of faces. Each face is a fan about its first corner until it is cut.
@@ -49,7 +49,7 @@ impl Faces {
                 return Err(format!("a face that is not convex has {count} corners, more than {MAX_CORNERS}"));
             }
             let points: Vec<DVec3> = corners.iter().map(|&corner| vertices.at(corner)).collect();
-            let Some(cut) = ears(&project_along(polygon.normal, &points), polygon.error) else { continue };
+            let Some(cut) = clip_ears(&project_along(polygon.normal, &points), polygon.error) else { continue };
             let cut: Vec<[u32; 3]> = cut.into_iter().map(|face| face.map(|corner| corners[corner])).collect();
             if overlaps || polygon.count_flat(&cut) < flat {
                 fan.copy_from_slice(&cut);

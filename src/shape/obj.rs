@@ -7,8 +7,8 @@ use std::path::Path;
 use smallvec::SmallVec;
 
 use super::faces::Faces;
+use super::interner::Interner;
 use super::mesh_data::MeshFile;
-use super::numbered::Numbered;
 use super::{Attributes, Vertices};
 use crate::math::{Bounds, DVec3};
 
@@ -133,7 +133,7 @@ struct ObjData {
     positions: Vec<[f64; 3]>,
     coordinates: Vec<[f32; 2]>,
     normals: Vec<[f32; 3]>,
-    corners: Numbered<Corner>,
+    corners: Interner<Corner>,
     faces: Faces,
     /// Number of triangles in faces that leave out texture coordinates.
     bare: usize,
@@ -153,7 +153,7 @@ impl ObjData {
                 corner[2] = NO_INDEX;
             }
             is_bare |= corner[1] == NO_INDEX;
-            face.push(self.corners.number(corner));
+            face.push(self.corners.intern(corner));
         }
         self.bare += if is_bare { face.len().saturating_sub(2) } else { 0 };
         self.faces.push(&face);
@@ -190,7 +190,7 @@ impl ObjData {
                 return Err(format!("the face in line {line} {}", missing_entry(kind)));
             }
         }
-        let (mut attributes, corners) = (Attributes::default(), self.corners.all());
+        let (mut attributes, corners) = (Attributes::default(), self.corners.into_values());
         let has = |kind: usize| counts[kind] > 0 && corners.iter().any(|corner| corner[kind] != NO_INDEX);
         if has(1) {
             let lookup = |corner: &Corner| self.coordinates.get(corner[1] as usize).copied().unwrap_or_default();

@@ -5,8 +5,8 @@ use std::path::Path;
 use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
 
 use super::faces::Faces;
+use super::interner::Interner;
 use super::mesh_data::{MeshFile, NO_VERTEX, check_finite, no_such_vertex};
-use super::numbered::Numbered;
 use super::ply_body::Body;
 use super::{Attributes, Vertices};
 
@@ -133,7 +133,7 @@ struct PlyData {
     faces: Faces,
     /// The distinct corners of faces, if faces have texture coordinates of their own. Each has its vertex and the bits
     /// of its coordinates, if it has any.
-    corners: Option<Numbered<(u32, Option<[u32; 2]>)>>,
+    corners: Option<Interner<(u32, Option<[u32; 2]>)>>,
 }
 
 impl PlyData {
@@ -163,13 +163,13 @@ impl PlyData {
         let has_pairs = coordinates.len() == 2 * vertices.len();
         self.attributes.bare += if has_pairs { 0 } else { vertices.len().saturating_sub(2) };
         let pair = |i: usize| has_pairs.then(|| [coordinates[2 * i], coordinates[2 * i + 1]].map(f32::to_bits));
-        let number = |(i, &vertex)| corners.number((vertex, pair(i)));
+        let number = |(i, &vertex)| corners.intern((vertex, pair(i)));
         self.faces.push(&vertices.iter().enumerate().map(number).collect::<Vec<_>>());
     }
 
     /// Makes a vertex of each distinct corner. What corners lack is taken from their vertices.
     fn split_corners(&mut self) -> Result<(), String> {
-        let Some(corners) = self.corners.take().map(Numbered::all) else { return Ok(()) };
+        let Some(corners) = self.corners.take().map(Interner::into_values) else { return Ok(()) };
         // Checked while vertices still have the numbers of the file.
         check_finite(&self.vertices, &self.attributes)?;
         let count = self.vertices.count();
@@ -208,7 +208,7 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let mut body = Body::open(path)?;
     let elements: Vec<ElementDef> = body.header.elements.values().cloned().collect();
     let corner_property = body.header.elements.get("face").and_then(|faces| faces.properties.get(CORNER_COORDINATES));
-    let mut lists = PlyData { corners: corner_property.map(|_| Numbered::default()), ..PlyData::default() };
+    let mut lists = PlyData { corners: corner_property.map(|_| Interner::default()), ..PlyData::default() };
     for element in &elements {
         match element.name.as_str() {
             "vertex" => lists.vertices(&mut body, element, smooth)?,

@@ -6,19 +6,19 @@ use super::{Curve, CurveKind};
 /// Values made from curves, each made once for all equal curves: thousands of lamps are often alike.
 #[derive(Debug)]
 pub struct CurveCache<T> {
-    known: HashMap<u64, Vec<(Curve, T)>>,
+    entries: HashMap<u64, Vec<(Curve, T)>>,
 }
 
 impl<T> Default for CurveCache<T> {
     fn default() -> Self {
-        Self { known: HashMap::new() }
+        Self { entries: HashMap::new() }
     }
 }
 
 impl<T: Clone> CurveCache<T> {
     /// Returns the value that was made from an equal curve, or makes it now.
     pub fn of(&mut self, curve: &Curve, make: impl FnOnce(&Curve) -> T) -> T {
-        let bucket = self.known.entry(hash(curve)).or_default();
+        let bucket = self.entries.entry(hash(curve)).or_default();
         if let Some((_, known)) = bucket.iter().find(|(other, _)| other == curve) {
             return known.clone();
         }

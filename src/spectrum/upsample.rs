@@ -40,7 +40,7 @@ pub struct Upsampler {
     steps: Vec<[f64; 3]>,
     /// A cache by the bits of the colors: a plan needs each color a dozen times, and a search takes 0.1 ms.
     #[serde(skip)]
-    found: Arc<Mutex<HashMap<[u64; 3], Sigmoid>>>,
+    cache: Arc<Mutex<HashMap<[u64; 3], Sigmoid>>>,
 }
 
 // The cache is not part of an upsampler's value, by which plans are told apart.
@@ -77,11 +77,11 @@ impl Upsampler {
         let to_rec709 = product(&ColorSpace::Rec709.matrix_from_xyz(), &adapted);
         let steps = spectrum.iter().skip(ULTRAVIOLET_COUNT).zip(data::color_matching());
         let color = |(power, cmf): (&f64, &[f64; 3])| std::array::from_fn(|c| power * cmf[c] * correction[c]);
-        Self { steps: steps.map(|step| apply(&to_rec709, color(step))).collect(), found: Arc::default() }
+        Self { steps: steps.map(|step| apply(&to_rec709, color(step))).collect(), cache: Arc::default() }
     }
 
     fn found(&self) -> MutexGuard<'_, HashMap<[u64; 3], Sigmoid>> {
-        self.found.lock().unwrap_or_else(PoisonError::into_inner)
+        self.cache.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Returns the spectrum of a reflectance, for numbers within 0..1. A color that no sigmoid has is moved toward gray

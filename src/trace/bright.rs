@@ -84,18 +84,18 @@ struct BrightTarget {
 
 /// Bright places, prepared for the tracer.
 #[derive(Clone, Debug)]
-pub(super) struct Bright {
+pub(super) struct AimedSampler {
     within: Bounds,
     targets: Vec<BrightTarget>,
     elsewhere: f64,
     /// Exponent of a surface's albedo in the smallest share of bounces that are not aimed.
-    left: i32,
+    unaimed_exponent: i32,
 }
 
 /// The distribution of aimed bounces at one point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aiming<'a> {
-    bright: &'a Bright,
+    bright: &'a AimedSampler,
     from: DVec3,
     /// Probability of each place among the aimed directions.
     chances: [f64; MAX_PLACES],
@@ -103,7 +103,7 @@ pub(super) struct Aiming<'a> {
     share: f64,
 }
 
-impl Bright {
+impl AimedSampler {
     pub(super) fn new(found: &BrightPlaces) -> Self {
         let target = |place: &BrightPlace| {
             let BrightPlace { center, half: [u, v], radiance } = *place;
@@ -117,12 +117,12 @@ impl Bright {
             }
         };
         let targets = found.places.iter().take(MAX_PLACES).map(target).collect();
-        let left = if found.are_openings { EQUAL_EXPONENT } else { FINITE_EXPONENT };
-        Self { within: found.within, targets, elsewhere: ELSEWHERE_WEIGHT * found.elsewhere, left }
+        let unaimed_exponent = if found.are_openings { EQUAL_EXPONENT } else { FINITE_EXPONENT };
+        Self { within: found.within, targets, elsewhere: ELSEWHERE_WEIGHT * found.elsewhere, unaimed_exponent }
     }
 
     /// Returns how to aim bounces at a point of a surface with this unit normal and albedo; `None` if they are not.
-    pub(super) fn at(&self, from: DVec3, normal: DVec3, albedo: impl FnOnce() -> f64) -> Option<Aiming<'_>> {
+    pub(super) fn aiming(&self, from: DVec3, normal: DVec3, albedo: impl FnOnce() -> f64) -> Option<Aiming<'_>> {
         if !self.within.contains(from) {
             return None;
         }
@@ -136,17 +136,17 @@ impl Bright {
             }
             let squared = offset.length_squared();
             let length = squared.sqrt();
-            let here = 0.1 + (offset.dot(normal) / length).max(0.0);
-            let there = 0.05 + height / length;
-            *chance = target.radiance * target.area * here * there / (squared + 0.3 * target.area);
+            let cos_at_surface = 0.1 + (offset.dot(normal) / length).max(0.0);
+            let cos_at_place = 0.05 + height / length;
+            *chance = target.radiance * target.area * cos_at_surface * cos_at_place / (squared + 0.3 * target.area);
             all += *chance;
         }
         if all == 0.0 {
             return None;
         }
         chances.iter_mut().for_each(|chance| *chance /= all);
-        let largest = MAX_AIMED_SHARE.min(1.0 - albedo().min(1.0).powi(self.left));
-        let share = (all / (all + PI * self.elsewhere)).min(largest);
+        let max_share = MAX_AIMED_SHARE.min(1.0 - albedo().min(1.0).powi(self.unaimed_exponent));
+        let share = (all / (all + PI * self.elsewhere)).min(max_share);
         Some(Aiming { bright: self, from, chances, share })
     }
 }
@@ -159,30 +159,30 @@ impl Aiming<'_> {
 
     /// Samples an aimed direction. Also returns the place that it was aimed at and its density there, if that is known.
     pub(super) fn draw(&self, [u, v]: [f64; 2]) -> Option<(DVec3, Option<(usize, f64)>)> {
-        let (mut left, mut chosen) = (u, None);
+        let (mut remaining, mut chosen) = (u, None);
         for (number, &chance) in self.chances.iter().enumerate().filter(|(_, chance)| **chance > 0.0) {
-            chosen = Some((number, (left / chance).min(1.0 - f64::EPSILON)));
-            if left < chance {
+            chosen = Some((number, (remaining / chance).min(1.0 - f64::EPSILON)));
+            if remaining < chance {
                 break;
             }
-            left -= chance;
+            remaining -= chance;
         }
         let (number, u) = chosen?;
         let sample = self.bright.targets[number].shape.sample(self.from, [u, v])?;
-        let known = match sample.density {
+        let place_density = match sample.density {
             Some(Density::SolidAngle(density)) => Some((number, density)),
             _ => None,
         };
-        Some((sample.direction, known))
+        Some((sample.direction, place_density))
     }
 
     /// Returns the density of a direction that the material samples with density `own`.
-    pub(super) fn pdf(&self, direction: DVec3, own: f64) -> f64 {
-        self.pdf_given(direction, own, None)
+    pub(super) fn pdf(&self, direction: DVec3, material_pdf: f64) -> f64 {
+        self.pdf_given(direction, material_pdf, None)
     }
 
     /// Returns the density of a direction, given the material's density `own` and that of one place, if it is known.
-    pub(super) fn pdf_given(&self, direction: DVec3, own: f64, known: Option<(usize, f64)>) -> f64 {
+    pub(super) fn pdf_given(&self, direction: DVec3, material_pdf: f64, known: Option<(usize, f64)>) -> f64 {
         let ray = Ray { origin: self.from, direction };
         let mut sum = 0.0;
         for (number, &chance) in self.chances.iter().enumerate().filter(|(_, chance)| **chance > 0.0) {
@@ -195,7 +195,7 @@ impl Aiming<'_> {
                 }
             };
         }
-        self.share * sum + (1.0 - self.share) * own
+        self.share * sum + (1.0 - self.share) * material_pdf
     }
 }
 
@@ -205,7 +205,7 @@ mod tests {
     use crate::math::{Frame, sample_cosine_hemisphere, unit};
 
     /// Returns three places: one upright, one lying and one tilted. All are aimed at, but from their planes.
-    fn bright() -> Bright {
+    fn bright() -> AimedSampler {
         let place = |center: [f64; 3], u: [f64; 3], v: [f64; 3], radiance| BrightPlace {
             center: center.into(),
             half: [u.into(), v.into()],
@@ -217,7 +217,7 @@ mod tests {
             place([1.0, 1.0, 1.0], [0.2, 0.1, 0.0], [-0.05, 0.1, 0.3], 5.0),
         ];
         let within = Bounds { min: DVec3::splat(-3.0), max: DVec3::splat(3.0) };
-        Bright::new(&BrightPlaces { within, places, elsewhere: 0.05, missed: 0.0, are_openings: false })
+        AimedSampler::new(&BrightPlaces { within, places, elsewhere: 0.05, missed: 0.0, are_openings: false })
     }
 
     const ROWS: usize = 12;
@@ -243,7 +243,7 @@ mod tests {
             (DVec3::new(0.5, 0.0, 1.0), DVec3::Y),
             (DVec3::new(2.9, 1.4, -2.0), unit(DVec3::new(-1.0, 0.3, 0.5))),
         ] {
-            let aiming = bright.at(from, normal, || 0.5).expect("it lies within");
+            let aiming = bright.aiming(from, normal, || 0.5).expect("it lies within");
             let frame = Frame::about(normal);
             // Integrates the density by the midpoints of a fine grid of all directions.
             let (rows, columns) = (ROWS * 100, COLUMNS * 100);
@@ -283,9 +283,12 @@ mod tests {
     #[test]
     fn unaimed_paths_do_not_gain_weight_without_bound() {
         let share = |only: bool, albedo: f64| {
-            let bright =
-                Bright { elsewhere: 0.0, left: if only { EQUAL_EXPONENT } else { FINITE_EXPONENT }, ..bright() };
-            bright.at(DVec3::new(0.3, 0.9, 0.2), DVec3::NEG_X, || albedo).expect("it lies within").share
+            let bright = AimedSampler {
+                elsewhere: 0.0,
+                unaimed_exponent: if only { EQUAL_EXPONENT } else { FINITE_EXPONENT },
+                ..bright()
+            };
+            bright.aiming(DVec3::new(0.3, 0.9, 0.2), DVec3::NEG_X, || albedo).expect("it lies within").share
         };
         for (albedo, among, alone) in [(0.2, 0.5, 0.5), (0.6, 0.5, 0.4), (0.8, 0.36, 0.2), (1.0, 0.0, 0.0)] {
             let found = [share(false, albedo), share(true, albedo)];
@@ -295,6 +298,6 @@ mod tests {
 
     #[test]
     fn nothing_is_aimed_from_outside_of_the_room() {
-        assert!(bright().at(DVec3::new(0.0, 3.5, 0.0), DVec3::Y, || 0.5).is_none());
+        assert!(bright().aiming(DVec3::new(0.0, 3.5, 0.0), DVec3::Y, || 0.5).is_none());
     }
 }

@@ -13,7 +13,7 @@ pub(super) struct Contribution {
     /// Its color in the film's color space.
     pub(super) rgb: [f64; 3],
     /// How much of it polarization may change, as X + Y + Z.
-    pub(super) moved: f64,
+    pub(super) polarization_change: f64,
     /// The lobe by which the first surface sent it to the camera, if layers need that.
     pub(super) first: Option<FirstLobe>,
     /// Number of times that surfaces scattered, mirrored or refracted it on its way.
@@ -25,7 +25,7 @@ pub(super) struct Contribution {
 impl Contribution {
     /// Returns it with this factor on its light.
     pub fn scaled(self, factor: f64) -> Self {
-        Self { rgb: self.rgb.map(|x| factor * x), moved: factor * self.moved, ..self }
+        Self { rgb: self.rgb.map(|x| factor * x), polarization_change: factor * self.polarization_change, ..self }
     }
 }
 

@@ -48,8 +48,8 @@ impl Dyes {
         let sources: Vec<(&Curve, Arc<Emission>)> = curves.map(|curve| (curve, emission(curve))).collect();
         let of_dye = |dye: &Dye| {
             let (dye, mut distinct) = (dye.prepared(), CurveCache::default());
-            let mut of = |curve, emission| distinct.of(curve, |_| basis.excitation(&dye, emission));
-            sources.iter().map(|(curve, emission)| of(*curve, emission)).collect()
+            let mut response = |curve, emission| distinct.of(curve, |_| basis.excitation(&dye, emission));
+            sources.iter().map(|(curve, emission)| response(*curve, emission)).collect()
         };
         let share = |dye: &Dye| {
             let absorbed = basis.tabulate(Quantity::Excitation, &dye.absorption);
@@ -65,7 +65,7 @@ impl Dyes {
 
     /// Returns the numbers of an object's dyes.
     #[inline]
-    pub(super) fn of(&self, scene: &Scene<Table>, object: u32) -> Range<usize> {
+    pub(super) fn of_object(&self, scene: &Scene<Table>, object: u32) -> Range<usize> {
         let material = scene.objects[object as usize].material as usize;
         self.first[material]..self.first[material + 1]
     }
@@ -115,7 +115,7 @@ pub(super) struct DyeChances<'a> {
 
 impl DyeChances<'_> {
     /// Returns the probability of one of the dyes.
-    pub(super) fn of(&self, dye: usize) -> f64 {
+    pub(super) fn chance(&self, dye: usize) -> f64 {
         self.scale * self.dyes.shares[dye]
     }
 

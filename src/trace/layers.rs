@@ -21,7 +21,7 @@ pub(super) struct Layers {
     /// For each layer that exists, where its numbers begin, if it is requested.
     offsets: Vec<Option<usize>>,
     /// Length of a row.
-    pub(super) numbers: usize,
+    pub(super) row_len: usize,
     /// The group of each light, and the names of the groups' layers.
     group_of: Vec<usize>,
     pub(super) groups: Vec<String>,
@@ -30,7 +30,7 @@ pub(super) struct Layers {
     /// The IDs by which mattes tell objects apart: for each requested matte, an ID for each object.
     pub(super) ids: Vec<(Layer, Vec<u32>)>,
     /// Where the numbers of shadow catchers begin, if there are any: see [`CatcherLight`].
-    caught: Option<usize>,
+    catcher_offset: Option<usize>,
     /// The bands of a spectral image, if one is requested.
     pub(super) spectrum: Option<Spectrum>,
     /// Whether light is separated by the lobe of the first surface.
@@ -56,9 +56,9 @@ fn names<S>(scene: &Scene<S>, matte: Layer) -> impl Iterator<Item = &str> {
 #[derive(Clone, Copy)]
 pub(super) struct CatcherLight<T> {
     /// The light with all objects.
-    pub(super) with: T,
+    pub(super) with_objects: T,
     /// The light with only those objects that are in the plate or light it.
-    pub(super) without: T,
+    pub(super) without_objects: T,
     /// The share of the pixel that shadow catchers cover.
     pub(super) share: f64,
 }
@@ -66,7 +66,7 @@ pub(super) struct CatcherLight<T> {
 impl CatcherLight<[f64; 3]> {
     /// Returns the share of each channel that other objects take, times that of the pixel; negative if they add light.
     pub(super) fn shadow(&self) -> [f64; 3] {
-        [0, 1, 2].map(|channel| self.share * missing_share(self.with[channel], self.without[channel]))
+        [0, 1, 2].map(|channel| self.share * missing_share(self.with_objects[channel], self.without_objects[channel]))
     }
 }
 
@@ -77,18 +77,22 @@ fn missing_share(with: f64, without: f64) -> f64 {
 
 impl CatcherLight<f64> {
     /// Returns what was added to the sum since `before`.
-    pub(super) fn since(self, before: Self) -> Self {
-        Self { with: self.with - before.with, without: self.without - before.without, share: self.share - before.share }
+    pub(super) fn minus(self, before: Self) -> Self {
+        Self {
+            with_objects: self.with_objects - before.with_objects,
+            without_objects: self.without_objects - before.without_objects,
+            share: self.share - before.share,
+        }
     }
 
     /// Returns the alpha: the share of luminance that other objects take, times that of the pixel; 0 if they add light.
     pub(super) fn coverage(&self) -> f64 {
-        (self.share * missing_share(self.with, self.without)).clamp(0.0, self.share)
+        (self.share * missing_share(self.with_objects, self.without_objects)).clamp(0.0, self.share)
     }
 }
 
 /// Values for shadow catchers: two colors and a share.
-const CAUGHT_VALUES: usize = 7;
+const CATCHER_VALUES: usize = 7;
 /// Values for polarization: the luminance of each Stokes component.
 pub(super) const STOKES_VALUES: usize = 4;
 /// Values for a half of the samples: a color, and how many samples it has.
@@ -101,18 +105,18 @@ impl Layers {
             (color_space.to_xyz()[1], apply(&color_space.matrix_from_xyz(), color_space.white()));
         let (offsets, first) = (vec![None; Layer::NAMES.len()], scene.format.first);
         let mut layers = Self { offsets, first, luminance, film_white, ..Self::default() };
-        let mut known = HashMap::new();
+        let mut group_numbers = HashMap::new();
         for group in &scene.light_groups {
             let name = light_layer_name(group);
-            let number = *known.entry(name.clone()).or_insert(layers.groups.len());
+            let number = *group_numbers.entry(name.clone()).or_insert(layers.groups.len());
             layers.group_of.push(number);
             layers.groups.extend((number == layers.groups.len()).then_some(name));
         }
         for &layer in &scene.format.layers {
-            if layers.at(layer).is_none() {
-                layers.offsets[layer as usize] = Some(layers.numbers);
+            if layers.offset(layer).is_none() {
+                layers.offsets[layer as usize] = Some(layers.row_len);
                 layers.requested.push(layer);
-                layers.numbers += match layer {
+                layers.row_len += match layer {
                     Layer::Lights => 3 * layers.groups.len(),
                     Layer::HalfA | Layer::HalfB => HALF_VALUES,
                     Layer::Polarization => STOKES_VALUES,
@@ -123,17 +127,17 @@ impl Layers {
             }
         }
         if scene.has_shadow_catchers() {
-            layers.caught = Some(layers.numbers);
-            layers.numbers += CAUGHT_VALUES;
+            layers.catcher_offset = Some(layers.row_len);
+            layers.row_len += CATCHER_VALUES;
         }
         if let Some(bands) = scene.format.spectral {
-            layers.spectrum = Spectrum::new(scene, basis, bands, layers.numbers);
-            layers.numbers += layers.spectrum.as_ref().map_or(0, Spectrum::numbers);
+            layers.spectrum = Spectrum::new(scene, basis, bands, layers.row_len);
+            layers.row_len += layers.spectrum.as_ref().map_or(0, Spectrum::row_len);
         }
         let mattes = layers.requested.iter().filter(|layer| layer.is_matte());
         layers.ids = mattes.map(|&matte| (matte, names(scene, matte).map(id).collect())).collect();
         layers.separates_lobes = layers.requested.iter().any(|layer| layer.is_of_lobe());
-        if layers.separates_lobes || layers.at(Layer::Albedo).or(layers.at(Layer::Residual)).is_some() {
+        if layers.separates_lobes || layers.offset(Layer::Albedo).or(layers.offset(Layer::Residual)).is_some() {
             layers.white = Some(White::new(basis));
         }
         layers
@@ -145,33 +149,35 @@ impl Layers {
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.requested.is_empty() && self.caught.is_none() && self.spectrum.is_none()
+        self.requested.is_empty() && self.catcher_offset.is_none() && self.spectrum.is_none()
     }
 
     /// Returns where in a row the numbers of a layer begin; `None` if it is not requested.
     #[inline]
-    pub(super) fn at(&self, layer: Layer) -> Option<usize> {
+    pub(super) fn offset(&self, layer: Layer) -> Option<usize> {
         self.offsets[layer as usize]
     }
 
     /// Returns whether layers need each gathered photon's light, spectrum or polarization, or whether it was dispersed.
     pub(super) fn needs_photon_details(&self) -> bool {
-        self.at(Layer::Lights).or(self.at(Layer::Dispersed)).is_some() || self.has_stokes() || self.spectrum.is_some()
+        self.offset(Layer::Lights).or(self.offset(Layer::Dispersed)).is_some()
+            || self.has_stokes()
+            || self.spectrum.is_some()
     }
 
     /// Returns whether any layer shows first surfaces.
     pub(super) fn shows_surfaces(&self) -> bool {
         use Layer::{Albedo, GeometricNormal, Normal, Position, Uv};
-        [Albedo, Normal, GeometricNormal, Position, Uv].iter().any(|layer| self.at(*layer).is_some())
+        [Albedo, Normal, GeometricNormal, Position, Uv].iter().any(|layer| self.offset(*layer).is_some())
     }
 
     pub(super) fn has_catchers(&self) -> bool {
-        self.caught.is_some()
+        self.catcher_offset.is_some()
     }
 
     /// Writes the light on a shadow catcher into an empty row.
-    pub(super) fn catch(&self, row: &mut [f64], [with, without]: [[f64; 3]; 2]) {
-        let Some(at) = self.caught else { return };
+    pub(super) fn write_catcher(&self, row: &mut [f64], [with, without]: [[f64; 3]; 2]) {
+        let Some(at) = self.catcher_offset else { return };
         row[at..at + 3].copy_from_slice(&with);
         row[at + 3..at + 6].copy_from_slice(&without);
         row[at + 6] = 1.0;
@@ -179,35 +185,35 @@ impl Layers {
 
     /// Adds the light of a photon on a shadow catcher to a row.
     pub(super) fn add_caught_photon(&self, row: &mut [f64], rgb: [f64; 3]) {
-        if let Some(at) = self.caught {
+        if let Some(at) = self.catcher_offset {
             add(&mut row[at..], rgb);
         }
     }
 
     /// Returns by how much other objects change the light on a shadow catcher, if there is one. Alpha follows from it.
-    pub(super) fn caught_change(&self, row: &[f64]) -> [f64; 3] {
-        self.caught.map_or([0.0; 3], |at| [0, 1, 2].map(|channel| row[at + channel] - row[at + 3 + channel]))
+    pub(super) fn catcher_change(&self, row: &[f64]) -> [f64; 3] {
+        self.catcher_offset.map_or([0.0; 3], |at| [0, 1, 2].map(|channel| row[at + channel] - row[at + 3 + channel]))
     }
 
     /// Returns the light of shadow catchers, from the sums of `kept` samples and what photons splat.
-    pub(super) fn caught(&self, sums: &[f64], splatted: &[f64], kept: f64) -> Option<CatcherLight<[f64; 3]>> {
-        let at = self.caught?;
+    pub(super) fn catcher_light(&self, sums: &[f64], splatted: &[f64], kept: f64) -> Option<CatcherLight<[f64; 3]>> {
+        let at = self.catcher_offset?;
         let mean = |number: usize| sums[at + number] / kept + splatted.get(at + number).copied().unwrap_or_default();
         let [with, without] = [0, 3].map(|first| [0, 1, 2].map(|channel| mean(first + channel)));
-        Some(CatcherLight { with, without, share: mean(6) })
+        Some(CatcherLight { with_objects: with, without_objects: without, share: mean(6) })
     }
 
     /// Returns the luminance of the light of shadow catchers.
-    pub(super) fn caught_luminance(&self, caught: &CatcherLight<[f64; 3]>) -> CatcherLight<f64> {
-        let [with, without] = [&caught.with, &caught.without].map(|rgb| self.luminance_of(rgb));
-        CatcherLight { with, without, share: caught.share }
+    pub(super) fn catcher_luminance(&self, caught: &CatcherLight<[f64; 3]>) -> CatcherLight<f64> {
+        let [with, without] = [&caught.with_objects, &caught.without_objects].map(|rgb| self.luminance_of(rgb));
+        CatcherLight { with_objects: with, without_objects: without, share: caught.share }
     }
 
     /// Adds the numbers of shadow catchers to sums.
-    pub(super) fn add_caught(&self, sums: &mut [f64], row: &[f64]) {
-        if let Some(at) = self.caught {
-            let more = &row[at..at + CAUGHT_VALUES];
-            sums[at..at + CAUGHT_VALUES].iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+    pub(super) fn add_catcher(&self, sums: &mut [f64], row: &[f64]) {
+        if let Some(at) = self.catcher_offset {
+            let more = &row[at..at + CATCHER_VALUES];
+            sums[at..at + CATCHER_VALUES].iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
         }
     }
 
@@ -231,7 +237,7 @@ impl Layers {
     /// Adds three numbers to a layer's numbers in a row, if the layer is requested.
     #[inline]
     pub(super) fn add_to(&self, layer: Layer, row: &mut [f64], numbers: [f64; 3]) {
-        if let Some(at) = self.at(layer) {
+        if let Some(at) = self.offset(layer) {
             add(&mut row[at..], numbers);
         }
     }
@@ -248,7 +254,7 @@ impl Layers {
             self.add_to(layer, row, color.map(|x| factor * x));
         }
         let [s1, s2, s3] = stokes.map(|color| factor * self.luminance_of(&color));
-        if let Some(at) = self.at(Layer::Polarization) {
+        if let Some(at) = self.offset(Layer::Polarization) {
             add(&mut row[at + 1..], [s1, s2, s3]);
         }
     }
@@ -276,10 +282,10 @@ impl Layers {
         if *dispersed {
             self.add_to(Layer::Dispersed, row, *rgb);
         }
-        if let Some(at) = self.at(Layer::Polarization) {
+        if let Some(at) = self.offset(Layer::Polarization) {
             row[at] += self.luminance_of(rgb);
         }
-        if let (Some(at), Some(light)) = (self.at(Layer::Lights), light) {
+        if let (Some(at), Some(light)) = (self.offset(Layer::Lights), light) {
             add(&mut row[at + 3 * self.group_of[*light]..], *rgb);
         }
     }

@@ -60,9 +60,9 @@ impl Media {
     /// Finds the media around a point, among the objects that count. The straight walk starts near `direction`.
     pub(super) fn around_among(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: ObjectFilter) -> Self {
         let is_bounded = |object: u32| scene.objects[object as usize].shape.is_bounded() && counts(object);
-        let left = Self::exit_balance(scene, start, perturbed(direction), &is_bounded);
+        let balance = Self::exit_balance(scene, start, perturbed(direction), &is_bounded);
         let mut media = Self::default();
-        for (material, count) in left.into_iter().filter(|(_, count)| *count > 0) {
+        for (material, count) in balance.into_iter().filter(|(_, count)| *count > 0) {
             media = media.with(material, count as u32);
         }
         for (material, count) in half_spaces_around(scene, start, direction, counts) {
@@ -92,7 +92,7 @@ impl Media {
     /// Returns the media after a straight walk from one point to another, through the objects that count.
     pub(super) fn after_walk(self, scene: &Scene<Table>, [from, to]: [DVec3; 2], counts: ObjectFilter) -> Self {
         let Some(direction) = (to - from).try_normalize() else { return self };
-        medium_changes(scene, Ray { origin: from, direction }, Some(to), counts).fold(self, Self::behind)
+        medium_changes(scene, Ray { origin: from, direction }, Some(to), counts).fold(self, Self::after_change)
     }
 
     /// Returns the medium that is really there.
@@ -117,13 +117,13 @@ impl Media {
     }
 
     /// Returns the media behind a boundary of these media.
-    pub(super) fn beyond(self, boundary: &Boundary) -> Self {
-        boundary.change.map_or(self, |change| self.behind(change))
+    pub(super) fn after_crossing(self, boundary: &Boundary) -> Self {
+        boundary.change.map_or(self, |change| self.after_change(change))
     }
 
     /// Returns the media behind the surface of a body; unchanged if the surface does not fit them.
-    fn behind(self, MediumChange { material, enters }: MediumChange) -> Self {
-        if enters { self.entered(material) } else { self.left(material) }.unwrap_or(self)
+    fn after_change(self, MediumChange { material, enters }: MediumChange) -> Self {
+        if enters { self.after_entering(material) } else { self.after_leaving(material) }.unwrap_or(self)
     }
 
     /// Returns the boundary where a ray of this direction crosses a surface of any material, which may bound no medium.
@@ -151,10 +151,10 @@ impl Media {
 
     /// Returns these media with `count` more bodies of one medium, or as many as there is room for.
     fn with(self, material: MaterialId, count: u32) -> Self {
-        (0..count).fold(self, |media, _| media.entered(material).unwrap_or(media))
+        (0..count).fold(self, |media, _| media.after_entering(material).unwrap_or(media))
     }
 
-    fn entered(mut self, material: MaterialId) -> Option<Self> {
+    fn after_entering(mut self, material: MaterialId) -> Option<Self> {
         let len = self.len as usize;
         match self.slot(material) {
             Some(at) => self.counts[at] = self.counts[at].checked_add(1)?,
@@ -167,7 +167,7 @@ impl Media {
         Some(self)
     }
 
-    fn left(mut self, material: MaterialId) -> Option<Self> {
+    fn after_leaving(mut self, material: MaterialId) -> Option<Self> {
         let len = self.len as usize;
         let at = self.slot(material)?;
         self.counts[at] -= 1;

@@ -74,7 +74,7 @@ impl Smoothness {
 /// A place on a smooth surface through which light may reach what the camera sees.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FocusPlace {
-    pub(super) at: DVec3,
+    pub(super) position: DVec3,
     smoothness: Smoothness,
     /// Whether the surface is unbounded.
     is_unbounded: bool,
@@ -159,7 +159,7 @@ fn walk_straight(
         if let Some(smoothness) = smoothness.filter(|smooth| to.contains(smooth)) {
             let distance = (point.position - scene.camera.position()).length();
             found.push(FocusPlace {
-                at: point.position,
+                position: point.position,
                 smoothness,
                 is_unbounded: !object.shape.is_bounded(),
                 distance,
@@ -196,7 +196,7 @@ pub(super) fn reach(places: &[FocusPlace]) -> Option<Ball> {
 /// would receive too few. In proportion to pixels, the far ones would: there, photons are gathered around places that
 /// look longer than wide.
 pub(super) fn parts(places: &[FocusPlace], smoothness: Smoothness, whole: &Ball, max: usize) -> Vec<FocusBall> {
-    let is_in = |place: &&FocusPlace| place.smoothness == smoothness && whole.contains(place.at);
+    let is_in = |place: &&FocusPlace| place.smoothness == smoothness && whole.contains(place.position);
     let mut places: Vec<FocusPlace> = places.iter().filter(is_in).copied().collect();
     if places.len() < MIN_PLACES {
         return Vec::new();
@@ -220,7 +220,7 @@ pub(super) fn parts(places: &[FocusPlace], smoothness: Smoothness, whole: &Ball,
 
 /// Returns a ball around some places, enlarged by a factor.
 fn around(places: &[FocusPlace], factor: f64) -> Ball {
-    let ball = Ball::of_box(&Bounds::around(places.iter().map(|place| place.at)));
+    let ball = Ball::of_box(&Bounds::around(places.iter().map(|place| place.position)));
     Ball { radius: factor * ball.radius, ..ball }
 }
 
@@ -233,7 +233,7 @@ mod tests {
         // Rows of an image of a plane, from below the camera to the horizon.
         let row = |i: u32| 1.6 / (f64::from(i) / 576.0);
         let place = |i| FocusPlace {
-            at: DVec3::new(f64::from(i % 24) / 24.0, 0.0, 1.0) * row(i),
+            position: DVec3::new(f64::from(i % 24) / 24.0, 0.0, 1.0) * row(i),
             smoothness: Smoothness::Whole,
             is_unbounded: true,
             distance: row(i),
@@ -244,7 +244,7 @@ mod tests {
         assert!((3..=6).contains(&parts.len()), "{parts:?}");
         assert!(parts.is_sorted_by(|a, b| 1.5 * a.ball.radius < b.ball.radius), "{parts:?}");
         for place in &places {
-            assert!(parts.iter().any(|part| part.ball.contains(place.at)), "{place:?} is in none of {parts:?}");
+            assert!(parts.iter().any(|part| part.ball.contains(place.position)), "{place:?} is in none of {parts:?}");
         }
         let share: f64 = parts.iter().map(|part| part.share).sum();
         assert!((share - 0.9).abs() < 1e-12, "{share} of the photons are sent to parts");

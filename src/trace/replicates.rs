@@ -40,7 +40,7 @@ struct CoverageSums {
 impl CoverageSums {
     fn add(&mut self, samples: [&PassSum; 2], caught: CatcherLight<f64>) {
         (0..2).for_each(|lobe| self.met[lobe] += samples[lobe].met());
-        let caught = [caught.with, caught.without, caught.share];
+        let caught = [caught.with_objects, caught.without_objects, caught.share];
         (0..3).for_each(|i| self.caught[i] += caught[i] as f32);
     }
 
@@ -48,7 +48,11 @@ impl CoverageSums {
     fn alpha(&self, weights: &SampleWeights, sent_samples: f64) -> f64 {
         let met = weights.sum(self.met.map(f64::from)) / weights.taken();
         let [with, without, share] = self.caught.map(|sum| f64::from(sum) / weights.added());
-        let caught = CatcherLight { with: with + f64::from(self.splatted) / sent_samples, without, share };
+        let caught = CatcherLight {
+            with_objects: with + f64::from(self.splatted) / sent_samples,
+            without_objects: without,
+            share,
+        };
         (met.clamp(0.0, 1.0) + caught.coverage()).min(1.0)
     }
 }

@@ -14,7 +14,7 @@ pub(super) struct Spectrum {
     /// Whether S1, S2 and S3 of each band are requested.
     pub(super) has_stokes: bool,
     /// Where their sums begin in a row: first those of all bands, then those of each other component.
-    pub(super) at: usize,
+    pub(super) offset: usize,
     /// The spectral radiance of a sum of 1: 1, or in W m^-2 sr^-1 nm^-1 if the scene's light is absolute.
     pub(super) unit: f64,
     /// For each source of light, the number of its response.
@@ -37,11 +37,11 @@ impl Spectrum {
         let responses = responses.into_iter().collect::<Option<_>>()?;
         // In absolute light, a flat spectrum of this radiance has the luminance of white.
         let unit = scene.format.white_luminance.map_or(1.0, |white| white / (EFFICACY * y_integral()));
-        Some(Self { bands, has_stokes: scene.format.has_stokes(), at, unit, response_of, responses })
+        Some(Self { bands, has_stokes: scene.format.has_stokes(), offset: at, unit, response_of, responses })
     }
 
     /// Returns the number of values in a row.
-    pub(super) fn numbers(&self) -> usize {
+    pub(super) fn row_len(&self) -> usize {
         self.components() * self.bands.count()
     }
 
@@ -55,14 +55,14 @@ impl Spectrum {
     }
 
     /// Returns light in all bands, times a factor, and its S1, S2 and S3, given as parts of it, if they are requested.
-    pub(super) fn of<const N: usize>(
+    pub(super) fn band_values<const N: usize>(
         &self,
         received: &ReceivedLight<N>,
         stokes: Option<&[Lanes<N>; 3]>,
         factor: f64,
     ) -> Vec<f64> {
         let ReceivedLight { source, draw, lanes, parted } = *received;
-        let (response, mut all) = (self.response(source), vec![0.0; self.numbers()]);
+        let (response, mut all) = (self.response(source), vec![0.0; self.row_len()]);
         for (lanes, bands) in self.parts(lanes, stokes).zip(all.chunks_exact_mut(self.bands.count())) {
             if !response.visit_hero_bands(draw, &lanes, parted, |band, light| bands[band] += factor * light) {
                 response.add_fixed(&lanes.0.map(|lane| factor * f64::from(lane)), bands);
@@ -90,7 +90,7 @@ pub(super) struct SpectrumSample<'a, const N: usize> {
     unparted: Vec<(usize, Lanes<N>, f64)>,
     single: Vec<(usize, f64)>,
     /// Sums over the samples that were kept: those that are added, and those that are subtracted.
-    kept: [SpectrumSums<N>; 2],
+    sums: [SpectrumSums<N>; 2],
 }
 
 /// Sums over samples, one component after another: lanes by their response, and bands.
@@ -103,8 +103,8 @@ struct SpectrumSums<const N: usize> {
 impl<'a, const N: usize> SpectrumSample<'a, N> {
     pub(super) fn new(spectrum: &'a Spectrum) -> Self {
         let lanes = vec![[0.0; N]; spectrum.components() * spectrum.responses.len()];
-        let nothing = SpectrumSums { lanes, bands: vec![0.0; spectrum.numbers()] };
-        Self { spectrum, unparted: Vec::new(), single: Vec::new(), kept: [nothing.clone(), nothing] }
+        let nothing = SpectrumSums { lanes, bands: vec![0.0; spectrum.row_len()] };
+        Self { spectrum, unparted: Vec::new(), single: Vec::new(), sums: [nothing.clone(), nothing] }
     }
 
     /// Begins another sample.
@@ -142,7 +142,7 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
 
     /// Keeps what the sample has received, to be added or subtracted.
     pub(super) fn keep(&mut self, is_subtracted: bool) {
-        let SpectrumSums { lanes: sums, bands } = &mut self.kept[usize::from(is_subtracted)];
+        let SpectrumSums { lanes: sums, bands } = &mut self.sums[usize::from(is_subtracted)];
         for (response, lanes, factor) in self.unparted.drain(..) {
             let sums = sums[response].iter_mut().zip(lanes.0);
             sums.for_each(|(sum, lane)| *sum += factor * f64::from(lane));
@@ -152,9 +152,9 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
 
     /// Adds everything that was kept to rows of sums, and resets it. If nothing is subtracted, the second may be empty.
     pub(super) fn hand_over(&mut self, rows: [&mut [f64]; 2]) {
-        let Self { spectrum, kept, .. } = self;
+        let Self { spectrum, sums: kept, .. } = self;
         for (row, kept) in rows.into_iter().zip(kept).filter(|(row, _)| !row.is_empty()) {
-            let row = &mut row[spectrum.at..][..kept.bands.len()];
+            let row = &mut row[spectrum.offset..][..kept.bands.len()];
             let components = kept.lanes.chunks_exact_mut(spectrum.responses.len().max(1));
             for (bands, lanes) in row.chunks_exact_mut(spectrum.bands.count()).zip(components) {
                 for (response, lanes) in spectrum.responses.iter().zip(lanes) {

@@ -1,6 +1,6 @@
 use std::sync::{Arc, OnceLock};
 
-use super::bright::{Bright, BrightPlaces};
+use super::bright::{AimedSampler, BrightPlaces};
 use super::density::{Rate, SampleDensity};
 use super::dyes::Dyes;
 use super::highlight::{Highlight, Highlights};
@@ -54,7 +54,7 @@ pub struct World {
     /// Whether each object lets light pass through; empty where none does.
     see_through: Vec<bool>,
     /// The bright places that bounces are aimed at.
-    pub(super) bright: Option<Bright>,
+    pub(super) bright: Option<AimedSampler>,
     /// How light paths of each light start, for light vertices.
     pub(super) path_starts: Arc<[PathStart]>,
     /// The highlights at which samples of each pixel are aimed.
@@ -93,7 +93,7 @@ impl World {
         let lobes = scene.materials.iter().map(|named| named.material.lobes()).collect();
         let light_sampler = LightSampler::new(&scene.lights);
         let sampled_lights = light_sampler.lights();
-        let bright = method.bright.as_ref().map(Bright::new);
+        let bright = method.bright.as_ref().map(AimedSampler::new);
         let path_starts = if method.light_vertices { path_starts(&scene, &method) } else { Arc::new([]) };
         let highlights = Arc::new(Highlights::new(&method.highlights, scene.film.filter));
         let mut world = Self {
@@ -150,7 +150,7 @@ impl World {
     /// Returns this world with other bright places that bounces are aimed at.
     pub fn with_bright(&self, bright: Option<BrightPlaces>) -> Self {
         let mut world = self.clone();
-        world.bright = bright.as_ref().map(Bright::new);
+        world.bright = bright.as_ref().map(AimedSampler::new);
         world.method.bright = bright;
         world
     }

@@ -64,7 +64,7 @@ const COUNTS: [(&str, &str, &str); 17] = [
     ("bytes of a scene", "src/scene/text/include.rs", "MAX_BYTES"),
     ("files that include", "src/scene/text/include.rs", "MAX_DEPTH"),
     ("bytes of an OpenEXR file", "src/film/exr_file.rs", "MOST_BYTES"),
-    ("corners of a face", "src/shape/ears.rs", "MAX_CORNERS"),
+    ("corners of a face", "src/shape/ear_clipping.rs", "MAX_CORNERS"),
     ("triangles of a glTF file", "src/shape/gltf.rs", "MAX_TRIANGLES"),
     ("threads", "src/rendering/options.rs", "MOST_THREADS"),
 ];

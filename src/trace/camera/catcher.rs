@@ -9,7 +9,7 @@ use crate::trace::walk::{ObjectSet, Path, Polarization};
 
 /// Returns whether the camera ray of the current sample has hit a shadow catcher.
 pub fn is_seen<const N: usize, P: Polarization<N>>(tracer: &PathTracer<N, P>) -> bool {
-    let object = tracer.sensor.layers.as_ref().and_then(|layers| layers.left().object);
+    let object = tracer.sensor.layers.as_ref().and_then(|layers| layers.sample_row().object);
     object.is_some_and(|object| tracer.walker.world.visibility(object) == Visibility::ShadowCatcher)
 }
 

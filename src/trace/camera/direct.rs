@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::numbers::{FURTHER_LIGHTS, MORE_DIGITS};
+use super::dimensions::{FURTHER_LIGHTS, MORE_DIGITS};
 use super::sensor::Sensor;
 use crate::light::{LightId, LightSample, SampledLight};
 use crate::material::Lobes;
@@ -129,7 +129,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     fn shadow_ray(&self, side: &Side<N>, drawn: SampledLight, u: [f64; 2]) -> Option<ShadowRay<N>> {
         let normal = side.normal;
         let sample = self.world.scene.lights[drawn.light].sample_li_in_part(self.at.point, normal, u)?;
-        let at = self.lit_by(side, drawn.light, &sample.ray);
+        let at = self.lit_surface(side, drawn.light, &sample.ray);
         let (context, wi) = (&at.context, sample.ray.direction);
         let is_found = |vertices: &LightVertices<N>| vertices.carry(self.world, drawn.light, &sample.ray);
         if wi.dot(normal) <= 0.0 || self.found_at.is_some_and(is_found) {
@@ -147,7 +147,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     }
 
     /// Returns the surface that a light illuminates along a ray: without the lobe that is left to photons, if any.
-    fn lit_by<'s>(&'s self, side: &Side<'s, N>, light: LightId, ray: &Ray) -> &'s Interaction<'s, N> {
+    fn lit_surface<'s>(&'s self, side: &Side<'s, N>, light: LightId, ray: &Ray) -> &'s Interaction<'s, N> {
         side.without_photon_lobe.filter(|_| self.world.is_found_by_photons(light, ray)).unwrap_or(self.at)
     }
 
@@ -156,19 +156,19 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let world = self.world;
         let ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor } = shadow_ray;
         let LightSample { ray, distance, object, part, .. } = sample;
-        let at = self.lit_by(side, *light, ray);
+        let at = self.lit_surface(side, *light, ray);
         let context = &at.context;
-        let ends = RayEnds { left: self.path.left, light: *object, part: *part };
+        let ends = RayEnds { left: self.path.last_primitive, light: *object, part: *part };
         let (distance, inside, last_occluder) = (*distance, side.inside, self.last_occluder);
         let occluders = Occluders::Objects(self.path.object_set);
         let segment = VisibilityTest { ray, distance, ends, inside, occluders, last_occluder };
         let wi = ray.direction;
         let light_of = || world.scene.lights[*light].toward(context.draw, wi, sample.uv);
         let mut bsdf_cos = *bsdf_cos;
-        let toward = || self.path.polarization.toward(at, wi, &mut bsdf_cos);
+        let toward = || self.path.polarization.toward_light(at, wi, &mut bsdf_cos);
         let arriving = segment.arriving_light(world, context.draw, toward, light_of);
         let Some((mut arriving, on_its_way)) = arriving else { return };
-        let lit = on_its_way.lit_by(&world.scene.lights[*light], wi, &mut arriving);
+        let lit = on_its_way.at_polarized_light(&world.scene.lights[*light], wi, &mut arriving);
         let on_its_way = lit.as_ref().unwrap_or(&on_its_way);
         // The density of aimed bounces takes time, so it is computed only for rays that are not occluded.
         let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
@@ -180,10 +180,14 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let received = ReceivedLight { source: light, draw: context.draw, lanes, parted: side.parted };
         let found_light = FoundLight::new(world, &received, self.excitation);
         let (rgb, dispersed) = (found_light.rgb, found_light.dispersed);
-        let moved = self.path.polarization.change_along(at, wi, on_its_way, &found_light);
+        let polarization_change = self.path.polarization.change_along(at, wi, on_its_way, &found_light);
         let (light, found, bounces) = (Some(light), FoundBy::Sampled, self.path.bounces + 1);
         let first = self.path.first_lobe(world, self.at, wi, side.normal != self.at.flat);
-        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &found_light, on_its_way);
+        sensor.receive(
+            Contribution { light, found, rgb, polarization_change, first, bounces, dispersed },
+            &found_light,
+            on_its_way,
+        );
     }
 
     /// Returns the factor on a light's emission and the BSDF. If the path's own next direction may hit the light, it is

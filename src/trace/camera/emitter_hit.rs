@@ -26,7 +26,7 @@ impl<const N: usize, P: Polarization<N>> EmitterHit<N, P> {
         };
         let weight = weight_of_hit(world, light, path.scatter.as_ref(), &path.ray, None);
         let mut emission = sky.toward(draw, path.ray.direction, [0.0; 2]);
-        let polarization = path.polarization.lit_by(sky, path.ray.direction, &mut emission);
+        let polarization = path.polarization.at_polarized_light(sky, path.ray.direction, &mut emission);
         let lanes = path.throughput.scaled(weight * factor).of(emission);
         Some(Self { light, lanes, normal: None, polarization: polarization.unwrap_or(path.polarization) })
     }

@@ -1,6 +1,6 @@
 //! Samples of a pixel that are aimed at its highlights.
 
-use super::numbers;
+use super::dimensions;
 use super::path_tracer::PathTracer;
 use crate::math::{BranchKey, Sampler};
 use crate::spectrum::Draw;
@@ -19,7 +19,7 @@ pub fn add_aimed<const N: usize, P: Polarization<N>>(
 ) {
     let world = tracer.walker.world;
     let (before, audit) = (tracer.walker.stats, tracer.walker.audit.take());
-    let [u, v, ..] = sampler.get_4d(BranchKey::CAMERA, numbers::HIGHLIGHT);
+    let [u, v, ..] = sampler.get_4d(BranchKey::CAMERA, dimensions::HIGHLIGHT);
     for highlight in highlights {
         let film = highlight.sample([u, v]);
         let offset = offset(film, pixel);

@@ -1,6 +1,6 @@
 //! What one camera sample contributes to the layers.
 
-use super::numbers::ALBEDO;
+use super::dimensions::ALBEDO;
 use super::surface::Surface;
 use crate::film::{FirstSurface, Layer};
 use crate::material::Branch;
@@ -41,8 +41,8 @@ pub struct SampleRow<'a> {
 impl<'a, const N: usize> LayerSample<'a, N> {
     /// Returns `None` if no layers are requested.
     pub fn of(world: &'a World) -> Option<Self> {
-        let Layers { numbers, .. } = world.layers;
-        let (row, spectrum) = (vec![0.0; numbers], world.layers.spectrum.as_ref().map(SpectrumSample::new));
+        let Layers { row_len, .. } = world.layers;
+        let (row, spectrum) = (vec![0.0; row_len], world.layers.spectrum.as_ref().map(SpectrumSample::new));
         let (share, chance, object, branches) = (0.0, 1.0, None, Vec::new());
         let is_aimed = false;
         (!world.layers.is_empty()).then_some(Self { world, row, spectrum, share, chance, object, branches, is_aimed })
@@ -56,7 +56,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         self.object = None;
     }
 
-    pub fn left(&self) -> SampleRow<'_> {
+    pub fn sample_row(&self) -> SampleRow<'_> {
         SampleRow { row: &self.row, object: self.object }
     }
 
@@ -80,7 +80,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     pub fn catch(&mut self, with_and_without: [[f64; 3]; 2]) {
         self.begin();
         if with_and_without.as_flattened().iter().all(|x| x.is_finite()) {
-            self.world.layers.catch(&mut self.row, with_and_without);
+            self.world.layers.write_catcher(&mut self.row, with_and_without);
         }
     }
 
@@ -178,7 +178,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     fn write_layer(&mut self, layer: Layer, numbers: &[f64]) {
-        if let Some(at) = self.world.layers.at(layer) {
+        if let Some(at) = self.world.layers.offset(layer) {
             self.row[at..at + numbers.len()].copy_from_slice(numbers);
         }
     }
@@ -193,7 +193,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         sampler: &Sampler,
     ) -> [f64; 3] {
         let layers = &self.world.layers;
-        let (Some(white), Some(_)) = (&layers.white, layers.at(Layer::Albedo)) else { return [0.0; 3] };
+        let (Some(white), Some(_)) = (&layers.white, layers.offset(Layer::Albedo)) else { return [0.0; 3] };
         let [u, v, ..] = sampler.get_random_4d(path.key, ALBEDO);
         let (context, draw) = (&at.context, at.context.draw);
         self.branches.clear();

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::numbers::VERTEX;
+use super::dimensions::VERTEX;
 use super::sensor::Sensor;
 use crate::math::{Ray, Sampler, gamma, unit};
 use crate::scene::RayEnds;
@@ -58,23 +58,27 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         // The ray ends before the surface of the vertex. That surface lies within its error of the point, and the ray,
         // whose direction is rounded, passes the point within a few rounding errors of the distance.
         let margin = (vertex.error + gamma(8) * distance) / cos;
-        let ends = RayEnds { left: self.path.left, ..RayEnds::default() };
+        let ends = RayEnds { left: self.path.last_primitive, ..RayEnds::default() };
         let (distance, inside, last_occluder) = (distance - margin, at.boundary.here, self.last_occluder);
         let occluders = Occluders::Objects(ObjectSet::All);
         let segment = VisibilityTest { ray: &ray, distance, ends, inside, occluders, last_occluder };
-        let toward = || self.path.polarization.toward(at, direction, &mut bsdf_cos);
+        let toward = || self.path.polarization.toward_light(at, direction, &mut bsdf_cos);
         let (arriving, on_its_way) = segment.arriving_light(world, at.context.draw, toward, || vertex.leaving)?;
         let factor = factor * cos / (distance_squared + self.vertices.near_squared());
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
         let received = ReceivedLight { source: vertex.light, draw: at.context.draw, lanes, parted: self.path.parted };
         let found_light = FoundLight::new(world, &received, None);
         let rgb = found_light.rgb;
-        let moved = self.path.polarization.change_along(at, direction, &on_its_way, &found_light);
+        let polarization_change = self.path.polarization.change_along(at, direction, &on_its_way, &found_light);
         let (bounces, dispersed) = (self.path.bounces + 1 + vertex.surfaces, self.path.parted || vertex.parted);
         let first = self.path.first_lobe(world, at, direction, false);
         let light = Some(vertex.light);
         let found = if vertex.is_of_photon { FoundBy::Gathered } else { FoundBy::Connected };
-        sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &found_light, &on_its_way);
+        sensor.receive(
+            Contribution { light, found, rgb, polarization_change, first, bounces, dispersed },
+            &found_light,
+            &on_its_way,
+        );
         Some(())
     }
 }

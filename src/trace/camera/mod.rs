@@ -2,12 +2,12 @@
 
 mod aimed_scattering;
 mod catcher;
+mod dimensions;
 mod direct;
 mod emitter_hit;
 mod highlight_samples;
 mod layer_sample;
 mod light_vertex_gathering;
-mod numbers;
 mod path_tracer;
 mod sensor;
 mod surface;

@@ -4,12 +4,12 @@ use std::rc::Rc;
 
 use super::aimed_scattering::{albedo, may_aim, scatter_aimed};
 use super::catcher;
+use super::dimensions;
 use super::direct::DirectLighting;
 use super::emitter_hit::EmitterHit;
 use super::highlight_samples::add_aimed;
 use super::layer_sample::LayerSample;
 use super::light_vertex_gathering::Resampling;
-use super::numbers;
 use super::sensor::{Sensor, SensorEvent};
 use super::surface::{FirstHit, PathContinuation, Surface, Through};
 use crate::film::{Layer, Sample};
@@ -68,7 +68,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     pub fn with_layers(mut self) -> Self {
         let world = self.walker.world;
         self.sensor.layers = LayerSample::of(world);
-        self.walker.audit = world.layers.at(Layer::Residual).map(|_| Audit::new(world));
+        self.walker.audit = world.layers.offset(Layer::Residual).map(|_| Audit::new(world));
         self
     }
 
@@ -85,13 +85,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             Transport::Deterministic { .. } => [0.5; 4],
             Transport::Random { .. } => sampler.get_4d(BranchKey::CAMERA, purpose),
         };
-        let [u, v, wavelength, _] = four_numbers(numbers::PLACE);
+        let [u, v, wavelength, _] = four_numbers(dimensions::PLACE);
         let place = world.scene.film.filter.place([u, v]);
         let film = DVec2::new(f64::from(x), f64::from(y)) + place;
         let is_subtracted = world.scene.film.filter.subtracts(place);
         let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(wavelength));
         let ray = if camera.has_lens() {
-            let [u, v, ..] = four_numbers(numbers::LENS);
+            let [u, v, ..] = four_numbers(dimensions::LENS);
             camera.lens_ray(film, [u, v])
         } else {
             camera.ray(film)
@@ -215,7 +215,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         first: &mut Option<SurfacePoint>,
     ) -> FirstHit {
         let pass_through::Cutout { is_hit, weight, .. } =
-            pass_through::hit(self.walker.world, draw, sampler, path, through);
+            pass_through::sample_cutout(self.walker.world, draw, sampler, path, through);
         if let Some(layers) = &mut self.sensor.layers {
             layers.choose(is_hit.then_some(surface_hit.hit.object), weight);
         }
@@ -234,7 +234,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let is_mean = |straight: &Straight<N>| *polarization == Polarizing::Traced && !straight.panes.is_zero();
         let Some(whole) = through.filter(|through| is_by_chance && !is_mean(&through.straight)) else { return 1.0 };
         let pass_through::Cutout { is_hit, chance, .. } =
-            pass_through::hit(self.walker.world, draw, sampler, path, Some(&whole));
+            pass_through::sample_cutout(self.walker.world, draw, sampler, path, Some(&whole));
         let before = path.throughput;
         let (holes, panes) = if is_hit { (Lanes::ZERO, whole.straight.panes) } else { (Lanes::ONE, Lanes::ZERO) };
         if !is_hit {
@@ -284,10 +284,14 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let received = ReceivedLight { source: light, draw, lanes: &lanes, parted: path.parted };
         let excitation = self.excitation(path);
         let met = FoundLight::new(self.walker.world, &received, excitation.as_deref());
-        let (rgb, dispersed, moved) = (met.rgb, met.dispersed, polarization.change_of_hit(&met));
+        let (rgb, dispersed, polarization_change) = (met.rgb, met.dispersed, polarization.change_of_hit(&met));
         let (light, found) = (Some(light), FoundBy::Hit { normal, scattered: path.scatter.is_some() });
         let Path { bounces, first, .. } = *path;
-        self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &polarization);
+        self.sensor.receive(
+            Contribution { light, found, rgb, polarization_change, first, bounces, dispersed },
+            &met,
+            &polarization,
+        );
     }
 
     /// Samples the lights where a surface scatters widely, and lets the path continue: its branches become pending.
@@ -333,12 +337,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     #[inline]
     fn follow_dyes(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler, must_pass: bool) -> f64 {
         let world = self.walker.world;
-        let Some(dyes) = world.dyes.as_ref().filter(|dyes| !dyes.of(&world.scene, at.object).is_empty()) else {
+        let Some(dyes) = world.dyes.as_ref().filter(|dyes| !dyes.of_object(&world.scene, at.object).is_empty()) else {
             return 1.0;
         };
         let all = must_pass || self.walker.follows_all(path, at.context.draw);
         let seen = self.excitation(path);
-        let excited = DyeExcitation { world, dyes, path, at, all, seen: seen.as_deref() }.sample_paths(sampler);
+        let excited = DyeExcitation { world, dyes, path, at, follows_all: all, excitation: seen.as_deref() }
+            .sample_paths(sampler);
         for (excited_path, excitation) in excited.paths {
             let excitation = Rc::new(excitation);
             let path = Path { excitation: Some(self.excitations.len() as u32), ..excited_path };
@@ -361,10 +366,10 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let material = at.material;
         let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
         let bright = world.bright.as_ref().filter(|_| may_aim(material));
-        let aiming = bright.and_then(|bright| bright.at(at.point.position, at.flat, || albedo(at)));
+        let aiming = bright.and_then(|bright| bright.aiming(at.point.position, at.flat, || albedo(at)));
         let (mut u, mut scatter) = ([0.0; 4], None);
         if at.lobes.is_wide() {
-            u = numbers::scatter(sampler, path);
+            u = dimensions::scatter(sampler, path);
             let all_lights = world.samples_all_lights(|| path.weight(draw));
             let last_occluder = &self.walker.last_occluder;
             let (aiming, excitation) = (aiming.as_ref(), self.excitation(path));
@@ -425,7 +430,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             return false;
         }
         let chance = vertices.continuation_probability((surface_hit.point.position - scatter.from).length_squared());
-        let u = sampler.get_random_4d(path.key, numbers::COMPLEMENT);
+        let u = sampler.get_random_4d(path.key, dimensions::COMPLEMENT);
         let ends = u[0] >= chance;
         if !ends {
             return false;

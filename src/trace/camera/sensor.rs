@@ -42,7 +42,7 @@ pub struct Sensor<'a, const N: usize> {
     /// What the current sample has received.
     pub rgb: [f64; 3],
     /// The amount of the received light that polarization may change.
-    moved: f64,
+    polarization_change: f64,
     /// How much kernels blur what it has received.
     pub blur: [f64; 3],
     pub observer: Option<&'a dyn Fn(SensorEvent)>,
@@ -52,8 +52,16 @@ pub struct Sensor<'a, const N: usize> {
 
 impl<'a, const N: usize> Sensor<'a, N> {
     pub fn new() -> Self {
-        let (rgb, moved, blur) = ([0.0; 3], 0.0, [0.0; 3]);
-        Self { ignores_light: false, counted: Counted::ALL, rgb, moved, blur, observer: None, layers: None }
+        let (rgb, polarization_change, blur) = ([0.0; 3], 0.0, [0.0; 3]);
+        Self {
+            ignores_light: false,
+            counted: Counted::ALL,
+            rgb,
+            polarization_change,
+            blur,
+            observer: None,
+            layers: None,
+        }
     }
 
     /// Decides which light of the next paths counts.
@@ -76,7 +84,7 @@ impl<'a, const N: usize> Sensor<'a, N> {
                 None => layers.receive(&contribution, received, polarized.stokes(), factor),
                 Some(dye) => {
                     let stokes = dye.polarization.stokes();
-                    dye.seen(world, received, |seen| layers.receive(&contribution, seen, stokes, factor));
+                    dye.with_received(world, received, |seen| layers.receive(&contribution, seen, stokes, factor));
                 }
             }
         }
@@ -105,7 +113,7 @@ impl<'a, const N: usize> Sensor<'a, N> {
     #[inline]
     fn receive_contribution(&mut self, all: &Contribution) {
         add(&mut self.rgb, all.rgb);
-        self.moved += all.moved;
+        self.polarization_change += all.polarization_change;
         if let Some(observer) = self.observer {
             observer(SensorEvent::Light(all));
         }
@@ -132,7 +140,7 @@ impl<'a, const N: usize> Sensor<'a, N> {
     }
 
     pub fn reset(&mut self) {
-        (self.rgb, self.moved, self.blur) = ([0.0; 3], 0.0, [0.0; 3]);
+        (self.rgb, self.polarization_change, self.blur) = ([0.0; 3], 0.0, [0.0; 3]);
     }
 
     /// Returns what the sample has received, and resets it for the next one.
@@ -140,11 +148,11 @@ impl<'a, const N: usize> Sensor<'a, N> {
     /// A sample that is not finite is left out of the image, and so of the light that is counted.
     pub fn read_out(&mut self, world: &World, stats: &mut Stats) -> [f64; 3] {
         let light = world.amount(self.rgb);
-        if light.is_finite() && self.moved.is_finite() {
+        if light.is_finite() && self.polarization_change.is_finite() {
             stats.light += light;
-            stats.polarization += self.moved;
+            stats.polarization += self.polarization_change;
         }
-        self.moved = 0.0;
+        self.polarization_change = 0.0;
         std::mem::take(&mut self.rgb)
     }
 }

@@ -132,8 +132,8 @@ impl Pair<'_> {
         let blur = [DVec3::X, DVec3::Y].map(|side| {
             let direction = unit(start.direction + frame.to_world(side) * turn);
             let turned = walk(0, Ray { origin: target - direction * far, direction });
-            let moved = turned.end.filter(|_| turned.met == first.met);
-            moved.map_or(0.0, |end| scale * (end.0.position - a.position).length() * radius / turn)
+            let matching_end = turned.end.filter(|_| turned.met == first.met);
+            matching_end.map_or(0.0, |end| scale * (end.0.position - a.position).length() * radius / turn)
         });
         let blur = f64::max(blur[0], blur[1]);
         Some(if separation >= CONTRAST * blur { separation } else { 0.0 })

@@ -186,7 +186,11 @@ impl Colors<'_> {
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(&surface_hit.point, wo);
         let inside = walk.media.inside(&world.scene);
-        if walk.choose_branch(pass_through::holes(world, draw, ray, inside, surface_hit)[0].into(), false, choice) {
+        if walk.choose_branch(
+            pass_through::hole_transmittance(world, draw, ray, inside, surface_hit)[0].into(),
+            false,
+            choice,
+        ) {
             return Next::Straight;
         }
         match world.scene.material_of(surface_hit.hit.object) {
@@ -226,7 +230,7 @@ impl Colors<'_> {
         let material = world.scene.objects[hit.object as usize].material;
         let (boundary, _) = walk.media.at_surface(&world.scene, material, point, ray.direction);
         if boundary.here == boundary.beyond {
-            walk.media = walk.media.beyond(&boundary);
+            walk.media = walk.media.after_crossing(&boundary);
             return Next::Straight;
         }
         let indices = boundary.sides().map(|inside| media::index(&world.scene, draw, inside));
@@ -244,7 +248,7 @@ impl Colors<'_> {
         let (direction, side) = if is_reflected {
             (reflect(wo, facet), 1.0)
         } else {
-            walk.media = walk.media.beyond(&boundary);
+            walk.media = walk.media.after_crossing(&boundary);
             (if n1 == n2 { ray.direction } else { interface.refract(wo, facet) }, -1.0)
         };
         if facets.is_some() && direction.dot(normal) * side <= 0.0 { Next::Lost } else { Next::Toward(direction) }

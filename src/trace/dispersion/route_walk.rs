@@ -162,7 +162,7 @@ impl<'a> RouteWalker<'a> {
     /// Decides at random whether a hole lets the route pass.
     fn passes_hole(&self, walk: &RouteWalk, surface_hit: &SurfaceHit, u: f64) -> bool {
         let inside = walk.media.inside(&self.world.scene);
-        u < pass_through::holes(self.world, &self.draw, &walk.ray, inside, surface_hit)[1].into()
+        u < pass_through::hole_transmittance(self.world, &self.draw, &walk.ray, inside, surface_hit)[1].into()
     }
 
     /// Returns the part of the material that is hit, at random if there are several.
@@ -216,7 +216,7 @@ impl<'a> RouteWalker<'a> {
         let (world, walk) = (self.world, at.walk);
         let (boundary, _) = walk.media.at_surface(&world.scene, at.material, at.point, walk.ray.direction);
         let [n1, n2] = boundary.sides().map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
-        let crossed = RouteWalk { media: walk.media.beyond(&boundary), ..walk.clone() };
+        let crossed = RouteWalk { media: walk.media.after_crossing(&boundary), ..walk.clone() };
         if boundary.here == boundary.beyond {
             return self.continue_straight(at, crossed);
         }
@@ -281,7 +281,7 @@ impl<'a> RouteWalker<'a> {
                 let step = Step { material: object.material, part, way: RouteEvent::Crossed };
                 let tint = transmittance.map_or(Lanes::ONE, |table| self.draw.read_at(table, uv));
                 let (boundary, _) = walk.media.at_surface(&world.scene, object.material, point, walk.ray.direction);
-                let media = walk.media.beyond(&boundary);
+                let media = walk.media.after_crossing(&boundary);
                 let surfaces = walk.surfaces + u32::from(boundary.here != boundary.beyond);
                 if surfaces > world.method.max_bounces {
                     return;

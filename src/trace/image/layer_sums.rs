@@ -28,7 +28,7 @@ impl LayerSums {
         match layers.is_empty() {
             true => Self::default(),
             false => Self {
-                rows: [pixels, if is_signed { pixels } else { 0 }].map(|rows| vec![0.0; rows * layers.numbers]),
+                rows: [pixels, if is_signed { pixels } else { 0 }].map(|rows| vec![0.0; rows * layers.row_len]),
                 depths: vec![f64::INFINITY; pixels],
                 covered: if layers.ids.is_empty() { Coverage::default() } else { Coverage::new(pixels) },
             },
@@ -44,18 +44,18 @@ impl LayerSums {
     /// Adds a sample of a pixel: its contribution to the image and to the layers. `early` samples are those of the
     /// first half. Each half is spread as evenly as all samples are, which every other sample would not be.
     pub fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, sample_row: &SampleRow) {
-        let row = &mut self.rows[usize::from(sample.is_subtracted)][pixel * layers.numbers..][..layers.numbers];
+        let row = &mut self.rows[usize::from(sample.is_subtracted)][pixel * layers.row_len..][..layers.row_len];
         if let Some(object) = sample_row.object.filter(|_| !layers.ids.is_empty() && !sample.is_subtracted) {
             self.covered.add(pixel, object);
         }
         let sample_row = sample_row.row;
-        layers.add_caught(row, sample_row);
+        layers.add_catcher(row, sample_row);
         let nearer = !sample.is_subtracted && sample.depth.is_some_and(|depth| depth < self.depths[pixel]);
         if let (true, Some(depth)) = (nearer, sample.depth) {
             self.depths[pixel] = depth;
         }
         for &layer in &layers.requested {
-            let Some(at) = layers.at(layer) else { continue };
+            let Some(at) = layers.offset(layer) else { continue };
             match layer {
                 Layer::Samples | Layer::Shadow => {}
                 Layer::CryptoObject | Layer::CryptoMaterial | Layer::CryptoAsset => {}
@@ -83,20 +83,21 @@ impl LayerSums {
 
     /// Returns the row of a pixel, and that of its samples that are subtracted, which may be empty.
     pub fn rows(&self, layers: &Layers, pixel: usize) -> [&[f64]; 2] {
-        let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
+        let range = pixel * layers.row_len..(pixel + 1) * layers.row_len;
         self.rows.each_ref().map(|rows| rows.get(range.clone()).unwrap_or_default())
     }
 
     /// Returns the row of a pixel, and that of its samples that are subtracted, to add to them.
     pub fn rows_mut(&mut self, layers: &Layers, pixel: usize) -> [&mut [f64]; 2] {
-        let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
+        let range = pixel * layers.row_len..(pixel + 1) * layers.row_len;
         self.rows.each_mut().map(|rows| rows.get_mut(range.clone()).unwrap_or_default())
     }
 
     /// Returns the sums of luminance that shadow catchers send to a pixel, if there are any.
-    pub fn caught(&self, layers: &Layers, pixel: usize) -> Option<CatcherLight<f64>> {
-        let of = |row: &[f64]| layers.caught(row, &[], 1.0).map(|caught| layers.caught_luminance(&caught));
-        layers.has_catchers().then(|| self.rows(layers, pixel)[0]).and_then(of)
+    pub fn catcher_luminance(&self, layers: &Layers, pixel: usize) -> Option<CatcherLight<f64>> {
+        let luminance =
+            |row: &[f64]| layers.catcher_light(row, &[], 1.0).map(|caught| layers.catcher_luminance(&caught));
+        layers.has_catchers().then(|| self.rows(layers, pixel)[0]).and_then(luminance)
     }
 }
 
@@ -161,24 +162,24 @@ impl PixelSums<'_> {
                 }
                 continue;
             }
-            let at = layers.at(layer).unwrap_or_default();
+            let offset = layers.offset(layer).unwrap_or_default();
             let image_count = if layer == Layer::Lights { layers.groups.len() } else { 1 };
             for (number, image) in images.by_ref().take(image_count).enumerate() {
                 let size = layer.channels().len();
                 let values = &mut image[self.place * size..][..size];
                 if layer == Layer::Shadow {
-                    let caught = layers.caught(self.sums[0], self.splatted, self.weights.added());
+                    let caught = layers.catcher_light(self.sums[0], self.splatted, self.weights.added());
                     let shadow = caught.map_or([0.0; 3], |caught| caught.shadow());
                     values.copy_from_slice(&shadow.map(stored));
                     continue;
                 }
                 if layer == Layer::Polarization {
-                    let stokes = std::array::from_fn(|component| self.light(at + component));
+                    let stokes = std::array::from_fn(|component| self.light(offset + component));
                     values.copy_from_slice(&polarization(stokes).map(stored));
                     continue;
                 }
                 for (channel, value) in values.iter_mut().enumerate() {
-                    let mean = self.value(layer, at + 3 * number, channel);
+                    let mean = self.value(layer, offset + 3 * number, channel);
                     *value =
                         stored(if layer == Layer::Albedo { mean.clamp(0.0, layers.film_white[channel]) } else { mean });
                 }
@@ -188,16 +189,16 @@ impl PixelSums<'_> {
 
     /// Writes the pixel's spectrum into the spectra of its tile.
     pub fn write_spectrum(&self, spectrum: &Spectrum, spectra: &mut [f32]) {
-        let numbers = spectrum.numbers();
+        let numbers = spectrum.row_len();
         for (number, value) in spectra[self.place * numbers..][..numbers].iter_mut().enumerate() {
-            *value = stored(spectrum.unit * self.light(spectrum.at + number));
+            *value = stored(spectrum.unit * self.light(spectrum.offset + number));
         }
     }
 
     /// Returns the sums of a number over samples that are added and subtracted, and what photons contribute to it.
     fn number(&self, at: usize) -> ([f64; 2], f64) {
-        let of = |row: &[f64]| row.get(at).copied().unwrap_or_default();
-        (self.sums.map(of), of(self.splatted))
+        let entry = |row: &[f64]| row.get(at).copied().unwrap_or_default();
+        (self.sums.map(entry), entry(self.splatted))
     }
 
     /// Returns the mean of a number that is light, including what photons contribute.

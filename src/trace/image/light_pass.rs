@@ -67,10 +67,14 @@ pub fn splat_photons<const N: usize, P: Polarization<N>>(
     let Some(targets) = &world.photon_targets else { return true };
     // Where every pass sends photons, they weigh as much as its samples.
     let weight = pass.replicate.map_or(1.0, |_| pass.numbers.len() as f64);
-    let (window, numbers) = (world.scene.film.window(), world.layers.numbers);
+    let (window, row_len) = (world.scene.film.window(), world.layers.row_len);
     for tile in tiles.iter_mut().filter(|tile| tile.splatted.pixels.is_empty()) {
         let pixels = tile.sums.len();
-        tile.splatted = PhotonTile { pixels: vec![[0.0; 3]; pixels], layers: vec![0.0; pixels * numbers], moved: 0.0 };
+        tile.splatted = PhotonTile {
+            pixels: vec![[0.0; 3]; pixels],
+            layers: vec![0.0; pixels * row_len],
+            polarization_change: 0.0,
+        };
     }
     let add = &mut |pixel: u32, splat: Splat| {
         let first_half = pass.is_in_first_half().unwrap_or(splat.first_half);
@@ -79,7 +83,7 @@ pub fn splat_photons<const N: usize, P: Polarization<N>>(
         let Some([tile, place]) = shard.place_of(window, pixel) else { return };
         let Tile { splatted, replicates, .. } = &mut tiles[tile];
         if !world.layers.is_empty() {
-            add_to_layers(world, &splat, &mut splatted.layers[place * numbers..][..numbers]);
+            add_to_layers(world, &splat, &mut splatted.layers[place * row_len..][..row_len]);
         }
         if splat.on_catcher {
             let luminance = world.layers.luminance_of(&rgb);
@@ -88,7 +92,7 @@ pub fn splat_photons<const N: usize, P: Polarization<N>>(
         }
         (0..3).for_each(|i| splatted.pixels[place][i] += rgb[i]);
         if change != 0.0 {
-            splatted.moved += f64::from(change) * world.amount(rgb);
+            splatted.polarization_change += f64::from(change) * world.amount(rgb);
         }
         pass.replicate.iter().for_each(|&replicate| replicates.add_splat(place, replicate, rgb));
     };
@@ -102,14 +106,15 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
         return world.layers.add_caught_photon(row, rgb);
     }
     let light = Some(light);
-    world
-        .layers
-        .add(row, &Contribution { light, found: FoundBy::Splatted, rgb, moved: 0.0, first, bounces, dispersed });
+    world.layers.add(
+        row,
+        &Contribution { light, found: FoundBy::Splatted, rgb, polarization_change: 0.0, first, bounces, dispersed },
+    );
     if let Some(stokes) = &splat.stokes {
         world.layers.add_stokes(row, **stokes, weight);
     }
     if let (Some(spectrum), Some(bands)) = (&world.layers.spectrum, &splat.bands) {
-        let sums = row[spectrum.at..].iter_mut().zip(bands.iter());
+        let sums = row[spectrum.offset..].iter_mut().zip(bands.iter());
         sums.for_each(|(sum, &light)| *sum += weight * f64::from(light));
     }
     world.layers.add_to(Layer::Variance, row, rgb.map(|x| x * x));
@@ -155,7 +160,7 @@ fn send_remaining<const N: usize, P: Polarization<N>>(
                 true => record(pixel, splat),
                 false => sending.stats.non_finite += 1,
             };
-            sent.kept.iter().for_each(|placed| placed.spread(world.scene.film, &mut record_finite));
+            sent.records.iter().for_each(|placed| placed.spread(world.scene.film, &mut record_finite));
         }
     }
     true

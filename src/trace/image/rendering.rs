@@ -218,8 +218,8 @@ impl<'a> Rendering<'a> {
     ) -> Advance {
         let stopped = AtomicBool::new(false);
         let latched_stop = || {
-            let due = stopped.load(Ordering::Relaxed) || should_stop();
-            stopped.fetch_or(due, Ordering::Relaxed) || due
+            let is_stopped = stopped.load(Ordering::Relaxed) || should_stop();
+            stopped.fetch_or(is_stopped, Ordering::Relaxed) || is_stopped
         };
         let callbacks = Callbacks { progress, should_stop: &latched_stop };
         if !self.begin_pass() {
@@ -392,7 +392,7 @@ impl<'a> Rendering<'a> {
     fn stats_of(&self, tile: &Tile, splat_weight: f64) -> Stats {
         let mut stats = tile.stats;
         let samples = f64::from(self.samples()) * splat_weight;
-        stats.polarization += samples * tile.splatted.moved;
+        stats.polarization += samples * tile.splatted.polarization_change;
         stats.light += samples * tile.splatted.pixels.iter().map(|&rgb| self.world().amount(rgb)).sum::<f64>();
         stats
     }

@@ -114,7 +114,7 @@ fn objection(world: &World, progress: &Progress, end_of_pass: Option<u32>, sampl
             if begun { ", and more in some pixels" } else { "" }
         ));
     }
-    let halves = [Layer::HalfA, Layer::HalfB].iter().any(|&half| world.layers.at(half).is_some());
+    let halves = [Layer::HalfA, Layer::HalfB].iter().any(|&half| world.layers.offset(half).is_some());
     (halves && requested != samples && (taken > 0 || begun)).then(|| {
         format!("half_a and half_b are halves of {samples} samples, and those of {requested} cannot be made from them")
     })

@@ -43,7 +43,7 @@ pub struct PhotonTile {
     /// A row for each pixel of what they contribute to the layers.
     pub layers: Vec<f64>,
     /// How much of their light polarization may change.
-    pub moved: f64,
+    pub polarization_change: f64,
 }
 
 /// Returns the bytes of memory that the film takes with a method, without layers: the sums of each pixel, those of its
@@ -80,7 +80,7 @@ impl Tile {
             && self.layers.has_same_shape(&other.layers)
             && self.replicates.has_same_shape(&other.replicates)
             && allowed_lengths(pixels).any(|length| length == self.splatted.pixels.len())
-            && allowed_lengths(pixels * layers.numbers).any(|length| length == self.splatted.layers.len())
+            && allowed_lengths(pixels * layers.row_len).any(|length| length == self.splatted.layers.len())
             && (self.ahead as usize) < pixels
     }
 
@@ -131,7 +131,7 @@ impl Tile {
         let mut blurs = [PassSum::default(), PassSum::default()];
         let measures_blur = light.photons.as_ref().is_some_and(|photons| photons.half_blur.is_some());
         let rate = world.rate(pixel);
-        let caught_before = pass.replicate.and_then(|_| self.layers.caught(&world.layers, place));
+        let caught_before = pass.replicate.and_then(|_| self.layers.catcher_luminance(&world.layers, place));
         for number in rate.own_numbers(&pass.numbers) {
             let average_number = rate.average_number(number);
             tracer.light_vertices = light.vertices(average_number - pass.numbers.start);
@@ -147,7 +147,7 @@ impl Tile {
             } else if let Some(layers) = tracer.layers() {
                 let early = pass.is_in_first_half().unwrap_or(average_number < world.method.samples.div_ceil(2));
                 layers.keep(sample.is_subtracted);
-                self.layers.add(&world.layers, place, early, &sample, &layers.left());
+                self.layers.add(&world.layers, place, early, &sample, &layers.sample_row());
             }
         }
         if let Some(layers) = tracer.layers() {
@@ -155,9 +155,9 @@ impl Tile {
         }
         if let Some(replicate) = pass.replicate {
             self.replicates.add(place, replicate, sums.each_ref(), blurs.each_ref());
-            let caught = self.layers.caught(&world.layers, place);
+            let caught = self.layers.catcher_luminance(&world.layers, place);
             if let (Some(after), Some(before)) = (caught, caught_before) {
-                self.replicates.add_alpha(place, replicate, sums.each_ref(), after.since(before));
+                self.replicates.add_alpha(place, replicate, sums.each_ref(), after.minus(before));
             }
         }
         let [added, subtracted] = sums;

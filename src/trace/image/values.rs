@@ -25,7 +25,7 @@ fn write_pixel(values: &mut TileValues, world: &World, tile: &Tile, splat_weight
     if layers.is_empty() {
         return;
     }
-    let (sums, numbers) = (tile.layers.rows(layers, place), place * layers.numbers..(place + 1) * layers.numbers);
+    let (sums, numbers) = (tile.layers.rows(layers, place), place * layers.row_len..(place + 1) * layers.row_len);
     let splatted = tile.splatted.layers.get(numbers).unwrap_or_default();
     let splatted = &*scaled(splatted, splat_weights.image);
     let (covered, rgb) = (&tile.layers.covered, [sum.rgb(), subtracted.rgb()]);
@@ -35,8 +35,8 @@ fn write_pixel(values: &mut TileValues, world: &World, tile: &Tile, splat_weight
     if let Some(spectrum) = &layers.spectrum {
         pixel_sums.write_spectrum(spectrum, &mut values.spectral);
     }
-    if let Some(caught) = layers.caught(sums[0], splatted, weights.added()) {
-        let alpha = f64::from(pixel.alpha) + layers.caught_luminance(&caught).coverage();
+    if let Some(caught) = layers.catcher_light(sums[0], splatted, weights.added()) {
+        let alpha = f64::from(pixel.alpha) + layers.catcher_luminance(&caught).coverage();
         pixel.alpha = alpha.min(1.0) as f32;
     }
 }

@@ -28,7 +28,7 @@ pub struct Batch {
 }
 
 pub struct SentBatch<T> {
-    pub kept: Vec<T>,
+    pub records: Vec<T>,
     /// Where each photon was sent and whether anything was kept of it.
     pub outcomes: Vec<([f64; 2], bool)>,
     pub stats: Stats,
@@ -63,7 +63,7 @@ pub fn trace_batch<const N: usize, P: Polarization<N>, T>(
     land: &LandCallback<N, P, T>,
 ) -> SentBatch<T> {
     let mut walker = Walker::<N, P>::new(world, PHOTON_TRANSPORT);
-    let (mut kept, mut outcomes) = (Vec::new(), Vec::new());
+    let (mut records, mut outcomes) = (Vec::new(), Vec::new());
     let target = &targets.targets[batch.target];
     let light = target.light;
     // Directions and wavelengths matter more than where on a small lamp photons start, so they get the best numbers.
@@ -72,20 +72,20 @@ pub fn trace_batch<const N: usize, P: Polarization<N>, T>(
         let key = [batch.target as u32, (number >> 32) as u32];
         let sampler = Sampler::new(batch.seed, key, number as u32);
         let u = sampler.get_4d(BranchKey::CAMERA, RAY);
-        let more = if is_extended { sampler.get_more_4d(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
+        let u_extended = if is_extended { sampler.get_more_4d(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
         let guide_uv = target.guide.sample([u[0], u[1]]);
-        let before = kept.len();
-        if let Some(emitted) = targets.sample_le(&world.scene, batch.target, guide_uv, [u[3], more]) {
+        let before = records.len();
+        if let Some(emitted) = targets.sample_le(&world.scene, batch.target, guide_uv, [u[3], u_extended]) {
             let draw = world.method.basis.draw(u[2]);
             let (draw, sampler, scope) = (&draw, &sampler, Surfaces::Smooth);
             let first_half = number < target.photons / 2;
             let photon = Photon { emitted: &emitted, light, draw, sampler, scope, first_half };
-            follow_photon(&mut walker, &photon, &mut |walker, photon_hit| land(walker, photon_hit, &mut kept));
+            follow_photon(&mut walker, &photon, &mut |walker, photon_hit| land(walker, photon_hit, &mut records));
         }
         if learns {
-            outcomes.push((guide_uv, kept.len() > before));
-            kept.clear();
+            outcomes.push((guide_uv, records.len() > before));
+            records.clear();
         }
     }
-    SentBatch { kept, outcomes, stats: walker.stats }
+    SentBatch { records, outcomes, stats: walker.stats }
 }

@@ -146,18 +146,18 @@ pub fn gather<const N: usize, P: Polarization<N>>(
     photons.alone.visit_near(position, radius, &mut |position, photon| {
         search.add_single(&mut found, position, photon);
     });
-    let (rgb, moved) = search.seen_of(&mut found, sampler);
-    let (rgb, moved) = (rgb.map(|x| x / map.chance), moved / map.chance);
+    let (rgb, polarization_change) = search.seen_of(&mut found, sampler);
+    let (rgb, polarization_change) = (rgb.map(|x| x / map.chance), polarization_change / map.chance);
     found.parts.iter_mut().flatten().for_each(|part| part.factor /= map.chance);
-    Gathered { all: center.all(rgb, moved), parts: found.parts }
+    Gathered { all: center.all(rgb, polarization_change), parts: found.parts }
 }
 
 impl<const N: usize, P: Polarization<N>> GatherPoint<'_, N, P> {
     /// Returns all that is gathered. Photons together have no single light, lobe or path, but came over at least two
     /// surfaces, as they do wherever the path has left one.
-    fn all(&self, rgb: [f64; 3], moved: f64) -> Contribution {
+    fn all(&self, rgb: [f64; 3], polarization_change: f64) -> Contribution {
         let (found, first, bounces) = (FoundBy::Gathered, self.path.first, self.path.bounces + 2);
-        Contribution { light: None, found, rgb, moved, first, bounces, dispersed: false }
+        Contribution { light: None, found, rgb, polarization_change, first, bounces, dispersed: false }
     }
 
     /// Returns what one photon contributes, up to a factor.
@@ -172,7 +172,7 @@ impl<const N: usize, P: Polarization<N>> GatherPoint<'_, N, P> {
         let (light, found, bounces) = (Some(light), FoundBy::Gathered, path.bounces + photon.surfaces);
         let first = path.first_lobe(world, at, photon.wi, photon.wi.dot(at.flat) < 0.0);
         let dispersed = parted || excitation.is_some_and(|excitation| excitation.parted);
-        Contribution { light, found, rgb, moved: 0.0, first, bounces, dispersed }
+        Contribution { light, found, rgb, polarization_change: 0.0, first, bounces, dispersed }
     }
 
     /// Whether lanes part on the way of the path and of a photon from the direction `wi`.
@@ -199,7 +199,9 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         let received = ReceivedLight { source: payload.light, draw, lanes: &lanes, parted };
         let ReceivedPhoton { rgb, stokes, spectrum } = match excitation {
             None => ReceivedPhoton::new(world, &received, joined.stokes()),
-            Some(dye) => dye.seen(world, &received, |seen| ReceivedPhoton::new(world, seen, dye.polarization.stokes())),
+            Some(dye) => {
+                dye.with_received(world, &received, |seen| ReceivedPhoton::new(world, seen, dye.polarization.stokes()))
+            }
         };
         let contribution = center.contribution(photon, payload.light, rgb, parted);
         let part = PhotonShare { contribution, stokes, spectrum, factor: density };
@@ -233,8 +235,8 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
                 ReceivedPhoton { rgb: *color, stokes, spectrum: PhotonSpectrum::SingleLane(*wavelength) }
             }
             Some(dye) => {
-                let brightness = weight * dye.worth(world, *light, wavelength);
-                dye.seen_of(brightness, |seen| ReceivedPhoton::new(world, seen, dye.polarization.stokes()))
+                let brightness = weight * dye.brightness(world, *light, wavelength);
+                dye.with_brightness(brightness, |seen| ReceivedPhoton::new(world, seen, dye.polarization.stokes()))
             }
         };
         let contribution = center.contribution(photon, *light, rgb, true);
@@ -286,7 +288,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         let GatheredSum { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;
         let Some(chosen) = chosen else { return (sum, 0.0) };
         let weight_ratio = weight / chosen.weight;
-        let mut moved = weight_ratio * chosen.change * world.amount(chosen.rgb);
+        let mut polarization_change = weight_ratio * chosen.change * world.amount(chosen.rgb);
         let up = at.point.leave(at.flat);
         let top = MAX_HEIGHT * self.radius;
         let clearance = world.scene.nearest(&up, 2.0 * top, &|_| true).map_or(top, |hit| 0.5 * hit.intersection.t);
@@ -296,7 +298,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
             if let Some(parts) = parts {
                 parts[chosen.part].factor *= 1.0 - weight_ratio;
             }
-            moved = 0.0;
+            polarization_change = 0.0;
         }
         let frame = Frame::about(at.flat);
         let stretch = (height + MAX_STEP * self.radius) / height;
@@ -310,11 +312,11 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
                 if self.sees(from, to, stretch) == Some(true) {
                     let drawn = f64::from(drawn);
                     parts.iter_mut().flatten().for_each(|part| part.factor *= drawn);
-                    return (sum.map(|x| x * drawn), moved * drawn);
+                    return (sum.map(|x| x * drawn), polarization_change * drawn);
                 }
             }
         }
-        (sum, moved)
+        (sum, polarization_change)
     }
 
     /// Whether a ray to a point, or `stretch` times as far, hits a surface that continues this one; `None` for no hit.

@@ -22,7 +22,7 @@ pub struct KdTree<T> {
 /// A plane that separates the two halves of a range.
 #[derive(Clone, Copy, Debug, Default)]
 struct Split {
-    at: f64,
+    position: f64,
     axis: u32,
 }
 
@@ -56,12 +56,12 @@ impl<T> KdTree<T> {
             self.visit_leaf(start..end, place, radius, visit);
             return;
         }
-        let (Split { at, axis }, middle) = (self.splits[node], start + (end - start) / 2);
-        let beyond = place[axis as usize] - at;
-        if beyond < radius {
+        let (Split { position: at, axis }, middle) = (self.splits[node], start + (end - start) / 2);
+        let signed_distance = place[axis as usize] - at;
+        if signed_distance < radius {
             self.visit(2 * node + 1, start..middle, place, radius, visit);
         }
-        if beyond > -radius {
+        if signed_distance > -radius {
             self.visit(2 * node + 2, middle..end, place, radius, visit);
         }
     }
@@ -90,7 +90,7 @@ fn split(points: &mut [(DVec3, u32)], node: usize, splits: &mut Vec<Split>) {
     if splits.len() <= node {
         splits.resize(node + 1, Split::default());
     }
-    splits[node] = Split { at: points[middle].0[axis], axis: axis as u32 };
+    splits[node] = Split { position: points[middle].0[axis], axis: axis as u32 };
     let (before, beyond) = points.split_at_mut(middle);
     split(before, 2 * node + 1, splits);
     split(beyond, 2 * node + 2, splits);

@@ -129,7 +129,7 @@ impl<'a> LightPaths<'a> {
 
     /// Whether a layer of lights is requested whose paths are so few that all of it would be too bright or too dark.
     pub fn have_starved_layer(&self) -> bool {
-        if self.world.layers.at(Layer::Lights).is_none() {
+        if self.world.layers.offset(Layer::Lights).is_none() {
             return false;
         }
         let mut group_shares: BTreeMap<&str, f64> = BTreeMap::new();
@@ -193,7 +193,7 @@ impl<'a> LightPaths<'a> {
             };
             for sent in in_parallel(batches.len(), &batch_vertices) {
                 stats += sent.stats;
-                vertices.extend(sent.kept);
+                vertices.extend(sent.records);
             }
         }
         let (center, near) = *self.scale.get_or_init(|| self.scale::<N, P>());

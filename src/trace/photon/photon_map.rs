@@ -88,7 +88,7 @@ pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -
     let (mut together, mut alone) = (Vec::new(), Vec::new());
     for sent in done {
         stats += sent.stats;
-        for (place, kept) in sent.kept {
+        for (place, kept) in sent.records {
             match kept {
                 PhotonRecord::JointLanes(photon) if photon.payload.flux.0.iter().all(|x| x.is_finite()) => {
                     together.push((place, photon));

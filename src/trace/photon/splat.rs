@@ -93,7 +93,7 @@ impl PlacedSplat {
 struct CameraConnection<'v, 'a, const N: usize, P: Polarization<N>> {
     walker: &'v Walker<'a, N, P>,
     photon_hit: &'v PhotonHit<'v, N, P>,
-    seen: Seen,
+    projection: Seen,
     /// Places on the film that are near enough to the window.
     places: Vec<DVec2>,
     /// Whether the camera is on the side where the photon arrived, and the surface as the camera sees it.
@@ -119,7 +119,7 @@ pub fn splat_photon<const N: usize, P: Polarization<N>>(
         let Some(connection) = CameraConnection::new(walker, photon_hit, seen_through) else { return };
         connection.keep(connection.scattered(), splats);
         if let Some(dyes) = &world.dyes {
-            for (number, dye) in dyes.of(&world.scene, photon_hit.at.object).enumerate() {
+            for (number, dye) in dyes.of_object(&world.scene, photon_hit.at.object).enumerate() {
                 connection.keep(connection.emitted_by_dye(dyes, dye, number), splats);
             }
         }
@@ -149,7 +149,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         }
         let same_side = seen.direction.dot(*flat) > 0.0;
         let viewed = at.viewed_from(seen.direction);
-        Some(Self { walker, photon_hit, seen, places, same_side, viewed, seen_through })
+        Some(Self { walker, photon_hit, projection: seen, places, same_side, viewed, seen_through })
     }
 
     /// Returns what reaches the camera of light that leaves the place toward it, and how it is polarized on its way.
@@ -160,15 +160,15 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         light: impl FnOnce() -> Lanes<N>,
     ) -> Option<(Lanes<N>, P)> {
         let PhotonHit { path, at, .. } = self.photon_hit;
-        let ray = at.point.leave(self.seen.direction);
-        let distance = (self.seen.start - ray.origin).length();
+        let ray = at.point.leave(self.projection.direction);
+        let distance = (self.projection.start - ray.origin).length();
         let world = self.walker.world;
         let local_medium = at.boundary.sides()[usize::from(!self.same_side)];
         let inside = match world.hides_objects && world.has_media {
             true => world.seen_media(&ray).inside(&world.scene),
             false => local_medium,
         };
-        let ends = RayEnds { left: path.left, ..RayEnds::default() };
+        let ends = RayEnds { left: path.last_primitive, ..RayEnds::default() };
         let (occluders, last_occluder) = (Occluders::Seen(self.seen_through), &self.walker.last_occluder);
         let segment = VisibilityTest { ray: &ray, distance, ends, inside, occluders, last_occluder };
         let (arriving, polarization) = segment.arriving_light(world, draw, start, light)?;
@@ -180,17 +180,17 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
 
     /// Returns the camera ray that sees the place.
     fn camera_ray(&self) -> Ray {
-        Ray { origin: self.seen.start, direction: -self.seen.direction }
+        Ray { origin: self.projection.start, direction: -self.projection.direction }
     }
 
     /// Returns the factor from light that leaves the place toward the camera to what the pixels receive.
     fn factor(&self) -> f64 {
         let Interaction { context, flat, .. } = self.photon_hit.at;
-        let cosines = self.seen.direction.dot(*flat).abs() / context.wo.dot(*flat).abs();
+        let cosines = self.projection.direction.dot(*flat).abs() / context.wo.dot(*flat).abs();
         let filter = self.walker.world.scene.camera.filter();
         self.photon_hit.photon.emitted.factor
             * cosines
-            * self.seen.importance
+            * self.projection.importance
             * filter.map_or(1.0, |filter| filter.transmittance())
     }
 
@@ -202,9 +202,9 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         let world = self.walker.world;
         let (mut bsdf_cos, _) = shading::evaluate(material, &viewed.context, viewed.flat, context.wo)?;
         let parted = path.parted || (!same_side && parts(at.lobes, material, &viewed.context));
-        let start = || path.polarization.forward(viewed, context.wo, &mut bsdf_cos);
+        let start = || path.polarization.after_forward_scattering(viewed, context.wo, &mut bsdf_cos);
         let (emission, on_its_way) = self.arriving_light(context.draw, start, || photon_hit.emission(world))?;
-        let polarized = path.polarization.seen(at, &viewed.context, &on_its_way, world, &self.camera_ray());
+        let polarized = path.polarization.see(at, &viewed.context, &on_its_way, world, &self.camera_ray());
         let arriving = polarized.factor.map_or(bsdf_cos * emission, |factor| bsdf_cos * emission * factor);
         let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
         let white = world.layers.white.as_ref();
@@ -233,10 +233,12 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         at.material.shares_of_dyes(&ScatterContext { draw, ..viewed.context }, Lanes::ONE, &mut shares);
         let polarization = path.polarization.for_excitation();
         let mut unpolarized = Lanes::ONE;
-        let start = || polarization.forward(&viewed.as_dye(&dyes.white, draw), at.context.wo, &mut unpolarized);
+        let start = || {
+            polarization.after_forward_scattering(&viewed.as_dye(&dyes.white, draw), at.context.wo, &mut unpolarized)
+        };
         let (arriving, on_its_way) = self.arriving_light(draw, start, || draw.start())?;
         let polarized =
-            polarization.seen(&at.as_dye(&dyes.white, draw), &viewed.context, &on_its_way, world, &self.camera_ray());
+            polarization.see(&at.as_dye(&dyes.white, draw), &viewed.context, &on_its_way, world, &self.camera_ray());
         let arriving =
             polarized.factor.map_or(arriving, |factor| arriving * factor) * shares[number] * brightness as f32;
         let received = ReceivedLight { source: dyes.source(dye), draw, lanes: &arriving, parted: false };
@@ -255,7 +257,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         let (world, factor) = (self.walker.world, self.factor());
         let rgb = received.rgb(&world.responses).map(|x| x * factor);
         let spectrum = world.layers.spectrum.as_ref();
-        let of_bands = |spectrum: &Spectrum| spectrum.of(received, polarized.stokes.as_ref(), factor);
+        let of_bands = |spectrum: &Spectrum| spectrum.band_values(received, polarized.stokes.as_ref(), factor);
         let bands = spectrum.map(|spectrum| of_bands(spectrum).into_iter().map(|x| x as f32).collect());
         let color = |part: Lanes<N>| received.times(part, &world.responses).map(|x| x * factor);
         let stokes = polarized.stokes.map(|stokes| Arc::new(stokes.map(color)));

@@ -167,7 +167,7 @@ fn for_both_kinds<T: Default>(world: &World, find: &dyn Fn(&PhotonTargets, RunBa
         let film = world.scene.film;
         let splat_batch = |batch: Batch, targets: &PhotonTargets| {
             let sent = trace_batch(world, targets, batch, false, &splat_photon::<N, Polarized>);
-            sent.kept.iter().for_each(|placed| placed.spread(film, &mut |_, _| ()));
+            sent.records.iter().for_each(|placed| placed.spread(film, &mut |_, _| ()));
             sent.stats
         };
         let splatted = |targets: &PhotonTargets| find(targets, &|batch| splat_batch(batch, targets));

@@ -150,7 +150,7 @@ fn look_at_pixel<const N: usize, P: Polarization<N>>(
         for number in 0..SAMPLES {
             let mut rgb = tracer.sample(&Sampler::of_pixel(seed, pixel, number), pixel).rgb;
             // A shadow catcher shows only shadows, however noisy its light is.
-            let shadow = tracer.layers().map(|layers| world.layers.caught_change(layers.left().row));
+            let shadow = tracer.layers().map(|layers| world.layers.catcher_change(layers.sample_row().row));
             shadow.iter().for_each(|shadow| add(&mut rgb, *shadow));
             (0..3).filter(|&i| rgb[i].is_finite()).for_each(|i| mean[i] += rgb[i] / f64::from(SAMPLES));
         }

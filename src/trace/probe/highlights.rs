@@ -19,32 +19,32 @@ use crate::trace::walk::{SurfaceHit, shading};
 use crate::trace::{Transport, World};
 
 /// Points along the longer side of the format at which the search begins.
-const SIDE: f64 = 128.0;
+const SEARCH_POINTS: f64 = 128.0;
 /// Largest number of lights whose mirror images are looked for, and of highlights that are kept.
-const LIGHTS: usize = 16;
-const HIGHLIGHTS: usize = 1024;
+const MAX_LIGHTS: usize = 16;
+const MAX_HIGHLIGHTS: usize = 1024;
 /// Half angle of the largest light that counts as small, in radians.
-const SMALL: f64 = 0.2;
+const MAX_HALF_ANGLE: f64 = 0.2;
 /// Directions that are drawn along each side of a square to find where the bright part of a sky is.
-const DRAWN: u32 = 16;
+const DRAWS_PER_SIDE: u32 = 16;
 /// Steps of Newton's method, and how often one is halved that leads farther away.
-const STEPS: usize = 24;
-const HALVINGS: usize = 8;
+const MAX_NEWTON_STEPS: usize = 24;
+const MAX_HALVINGS: usize = 8;
 /// Distance of the points that tell how directions change over the film, in pixels.
-const APART: f64 = 1e-4;
+const FILM_STEP: f64 = 1e-4;
 /// Share of a highlight's width that Newton's method may be off its center.
-const CLOSE: f64 = 1e-2;
+const TOLERANCE: f64 = 1e-2;
 /// Area in square pixels up to which a highlight is small, and the longest half axis of its ellipse in pixels.
-const LARGEST: f64 = 1.0;
-const LONGEST: f64 = 16.0;
+const MAX_AREA: f64 = 1.0;
+const MAX_HALF_AXIS: f64 = 16.0;
 /// How much wider than the mirror image of a light its ellipse may be. Film and directions are not quite in proportion,
 /// so the image is no ellipse. The first of these is taken beyond which a surface mirrors nothing of the light.
 const MARGINS: [f64; 9] = [1.003, 1.006, 1.012, 1.025, 1.05, 1.1, 1.2, 1.4, 1.8];
 /// Points on the rim of an ellipse where that is looked at.
-const RIM: u32 = 16;
-/// Half width of the ellipse of a rough surface's highlight, in widths of its slopes. A share of 1 / (1 + WIDTH^2) of the
-/// light lies beyond.
-const WIDTH: f64 = 6.0;
+const RIM_POINTS: u32 = 16;
+/// Half width of the ellipse of a rough surface's highlight, in widths of its slopes. With this half width W, a
+/// share of 1 / (1 + W^2) of the light lies beyond.
+const ROUGH_HALF_WIDTH: f64 = 6.0;
 
 /// Returns the highlights of the format that are smaller than a pixel, whatever part of it is rendered.
 pub fn small_highlights(world: &World) -> Vec<Highlight> {
@@ -64,14 +64,14 @@ pub fn small_highlights(world: &World) -> Vec<Highlight> {
 
 /// Returns the width of a material's slopes, 0 if any part of it is smooth; `None` if it mirrors nothing sharply.
 fn slopes(material: &Material<Table>) -> Option<f64> {
-    let of_part = |part: &Material<Table>| match part.roughness() {
+    let part_slopes = |part: &Material<Table>| match part.roughness() {
         _ if !part.parts().is_empty() => None,
         _ if part.lobes().intersects(Lobes::DELTA_REFLECTION) => Some(0.0),
         roughness => {
             roughness.map(|r| r.value() * r.value()).filter(|_| part.lobes().intersects(Lobes::NARROW_REFLECTION))
         }
     };
-    material.with_parts().into_iter().filter_map(of_part).min_by(f64::total_cmp)
+    material.with_parts().into_iter().filter_map(part_slopes).min_by(f64::total_cmp)
 }
 
 /// A light that is looked for.
@@ -92,20 +92,20 @@ enum Place {
 
 impl SmallLight {
     /// Returns the direction from a point to its center, the sine of its half angle and the distance.
-    fn seen_from(&self, point: DVec3) -> Seen {
+    fn seen_from(&self, point: DVec3) -> ApparentLight {
         match &self.place {
-            &Place::Far { direction, sin } => Seen { direction, sin, distance: f64::INFINITY },
+            &Place::Far { direction, sin } => ApparentLight { direction, sin, distance: f64::INFINITY },
             Place::Near(ball) => {
                 let way = ball.center - point;
                 let distance = way.length();
-                Seen { direction: way / distance, sin: ball.radius / distance, distance }
+                ApparentLight { direction: way / distance, sin: ball.radius / distance, distance }
             }
         }
     }
 }
 
 /// How a light is seen from a point.
-struct Seen {
+struct ApparentLight {
     direction: DVec3,
     sin: f64,
     distance: f64,
@@ -113,7 +113,7 @@ struct Seen {
 
 /// Returns lights whose mirror images may be small, suns and skies first.
 fn small_lights(world: &World) -> Vec<SmallLight> {
-    let of = |(id, light): (LightId, &Light<Table>)| {
+    let small_light = |(id, light): (LightId, &Light<Table>)| {
         let (object, place) = match light {
             Light::Sun(sun) => {
                 let sin = libm::sin(0.5 * sun.angular_diameter.to_radians());
@@ -126,22 +126,23 @@ fn small_lights(world: &World) -> Vec<SmallLight> {
         };
         Some(SmallLight { id, object, place })
     };
-    let mut lights: Vec<SmallLight> = world.scene.lights.iter().enumerate().filter_map(of).collect();
+    let mut lights: Vec<SmallLight> = world.scene.lights.iter().enumerate().filter_map(small_light).collect();
     lights.sort_by_key(|light| matches!(light.place, Place::Near(_)));
-    lights.truncate(LIGHTS);
+    lights.truncate(MAX_LIGHTS);
     lights
 }
 
 /// Returns where the bright part of a sky's image is, such as the sun; `None` without one.
 fn bright_part(sky: &Environment<Table>) -> Option<Place> {
-    let at = |i: u32| (f64::from(i) + 0.5) / f64::from(DRAWN);
-    let drawn = (0..DRAWN * DRAWN).map(|i| Some(sky.sample_bright([at(i % DRAWN), at(i / DRAWN)])?.0));
+    let cell_center = |i: u32| (f64::from(i) + 0.5) / f64::from(DRAWS_PER_SIDE);
+    let drawn = (0..DRAWS_PER_SIDE * DRAWS_PER_SIDE)
+        .map(|i| Some(sky.sample_bright([cell_center(i % DRAWS_PER_SIDE), cell_center(i / DRAWS_PER_SIDE)])?.0));
     let Cone { axis, one_minus_cos } = Cone::around(&drawn.collect::<Option<Vec<DVec3>>>()?)?;
     Some(Place::Far { direction: axis, sin: (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt() })
 }
 
 /// What a point of the film shows.
-struct Glimpse {
+struct VisiblePoint {
     object: u32,
     point: SurfacePoint,
     /// The unit vector to the camera, and the unit normal by which the surface mirrors.
@@ -151,23 +152,23 @@ struct Glimpse {
     slopes: f64,
 }
 
-impl Glimpse {
+impl VisiblePoint {
     /// Returns how far the surface is from mirroring a light: the difference of the two vectors that would be equal.
     /// They are the mirrored direction and that of the light or, on a rough surface, the facet's normal and that of the
     /// surface.
     fn mismatch(&self, light: &SmallLight) -> Mismatch {
-        let Seen { direction, .. } = light.seen_from(self.point.position);
+        let ApparentLight { direction, .. } = light.seen_from(self.point.position);
         if self.slopes == 0.0 {
-            return Mismatch { wanted: direction, apart: reflect(self.wo, self.normal) - direction };
+            return Mismatch { target: direction, difference: reflect(self.wo, self.normal) - direction };
         }
         let half = (self.wo + direction).normalize_or_zero();
-        Mismatch { wanted: self.normal, apart: half - self.normal }
+        Mismatch { target: self.normal, difference: half - self.normal }
     }
 }
 
 struct Mismatch {
-    wanted: DVec3,
-    apart: DVec3,
+    target: DVec3,
+    difference: DVec3,
 }
 
 struct Search<'a> {
@@ -181,33 +182,37 @@ struct Search<'a> {
 impl<'a> Search<'a> {
     fn new(world: &'a World, slopes: Vec<Option<f64>>) -> Self {
         let film = world.scene.film;
-        Self { world, slopes, step: f64::from(film.width.max(film.height)) / SIDE }
+        Self { world, slopes, step: f64::from(film.width.max(film.height)) / SEARCH_POINTS }
     }
 
     fn highlights(&self, lights: &[SmallLight]) -> Vec<Highlight> {
         let film = self.world.scene.film;
         let [columns, rows] = [film.width, film.height].map(|size| (f64::from(size) / self.step).ceil() as usize);
-        let at = |i: usize| DVec2::new((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5) * self.step;
-        let glimpses: Vec<Option<Glimpse>> = (0..columns * rows).map(|i| self.look(at(i))).collect();
+        let film_point = |i: usize| DVec2::new((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5) * self.step;
+        let visible_points: Vec<Option<VisiblePoint>> =
+            (0..columns * rows).map(|i| self.visible_point(film_point(i))).collect();
         let mut found: Vec<Highlight> = Vec::new();
         for light in lights {
-            let squared = |glimpse: &Glimpse| glimpse.mismatch(light).apart.length_squared();
-            let off: Vec<f64> =
-                glimpses.iter().map(|glimpse| glimpse.as_ref().map_or(f64::INFINITY, squared)).collect();
+            let squared_mismatch = |visible: &VisiblePoint| visible.mismatch(light).difference.length_squared();
+            let squared_mismatches: Vec<f64> =
+                visible_points.iter().map(|visible| visible.as_ref().map_or(f64::INFINITY, squared_mismatch)).collect();
             let is_nearest = |&i: &usize| {
-                let Some(own) = &glimpses[i] else { return false };
+                let Some(center) = &visible_points[i] else { return false };
                 let (x, y) = (i % columns, i / columns);
-                let beside = |j: usize| {
-                    j != i && off[j] < off[i] && glimpses[j].as_ref().is_some_and(|other| other.object == own.object)
+                let is_better_neighbor = |j: usize| {
+                    j != i
+                        && squared_mismatches[j] < squared_mismatches[i]
+                        && visible_points[j].as_ref().is_some_and(|other| other.object == center.object)
                 };
                 let [left, top] = [x, y].map(|at| at.saturating_sub(1));
                 let [right, bottom] = [(x + 1).min(columns - 1), (y + 1).min(rows - 1)];
-                !(top..=bottom).any(|y| (left..=right).any(|x| beside(y * columns + x)))
+                !(top..=bottom).any(|y| (left..=right).any(|x| is_better_neighbor(y * columns + x)))
             };
-            for i in (0..off.len()).filter(is_nearest) {
-                let highlight = glimpses[i].as_ref().and_then(|glimpse| self.follow(at(i), glimpse.object, light));
+            for i in (0..squared_mismatches.len()).filter(is_nearest) {
+                let highlight =
+                    visible_points[i].as_ref().and_then(|visible| self.follow(film_point(i), visible.object, light));
                 found.extend(highlight.filter(|new| !found.iter().any(|known| is_same(known, new))));
-                if found.len() == HIGHLIGHTS {
+                if found.len() == MAX_HIGHLIGHTS {
                     return found;
                 }
             }
@@ -216,93 +221,101 @@ impl<'a> Search<'a> {
     }
 
     /// Returns what a point of the film shows; `None` if that mirrors nothing sharply.
-    fn look(&self, film: DVec2) -> Option<Glimpse> {
+    fn visible_point(&self, film: DVec2) -> Option<VisiblePoint> {
         let scene = &self.world.scene;
         let ray = scene.camera.ray(film);
         let hit = scene.intersect_seen(&ray, None)?;
         let slopes = self.slopes[scene.objects[hit.object as usize].material as usize]?;
         let (wo, SurfaceHit { point, .. }) = (-ray.direction, SurfaceHit::new(self.world, &ray, hit));
         let [_, normal] = shading::normals(&point, wo);
-        Some(Glimpse { object: hit.object, point, wo, normal, slopes })
+        Some(VisiblePoint { object: hit.object, point, wo, normal, slopes })
     }
 
     /// Follows an object's mirror image of a light from a point of the film to its center. Returns the highlight there
     /// if it is small.
     fn follow(&self, start: DVec2, object: u32, light: &SmallLight) -> Option<Highlight> {
-        let look = |film: DVec2| self.look(film).filter(|glimpse| glimpse.object == object);
-        let (mut film, mut glimpse) = (start, look(start)?);
-        for _ in 0..STEPS {
-            let Mismatch { wanted, apart } = glimpse.mismatch(light);
-            let frame = Frame::about(wanted);
-            let flat = |glimpse: &Glimpse| frame.to_local(glimpse.mismatch(light).apart).truncate();
-            let here = flat(&glimpse);
-            let change = |way: DVec2| Some((flat(&look(film + way)?) - here) / (way.x + way.y));
-            let along = |way: DVec2| change(way).or_else(|| change(-way));
-            let change = DMat2::from_cols(along(DVec2::X * APART)?, along(DVec2::Y * APART)?);
-            let back = change.inverse();
-            if !back.is_finite() {
+        let object_point = |film: DVec2| self.visible_point(film).filter(|visible| visible.object == object);
+        let (mut film, mut visible) = (start, object_point(start)?);
+        for _ in 0..MAX_NEWTON_STEPS {
+            let Mismatch { target, difference } = visible.mismatch(light);
+            let frame = Frame::about(target);
+            let local_difference =
+                |visible: &VisiblePoint| frame.to_local(visible.mismatch(light).difference).truncate();
+            let current = local_difference(&visible);
+            let derivative =
+                |step: DVec2| Some((local_difference(&object_point(film + step)?) - current) / (step.x + step.y));
+            let column = |step: DVec2| derivative(step).or_else(|| derivative(-step));
+            let jacobian = DMat2::from_cols(column(DVec2::X * FILM_STEP)?, column(DVec2::Y * FILM_STEP)?);
+            let inverse_jacobian = jacobian.inverse();
+            if !inverse_jacobian.is_finite() {
                 return None;
             }
-            let width = self.width(&glimpse, light);
-            if here.length() <= CLOSE * width {
-                return self.highlight(film - back * here, &glimpse, light, back);
+            let width = self.width(&visible, light);
+            if current.length() <= TOLERANCE * width {
+                return self.highlight(film - inverse_jacobian * current, &visible, light, inverse_jacobian);
             }
-            let mut way = (back * -here).clamp_length_max(4.0 * self.step);
-            let is_nearer = |next: &Glimpse| next.mismatch(light).apart.length() < apart.length();
-            let next = (0..HALVINGS).find_map(|_| {
-                let next = look(film + way).filter(is_nearer).map(|next| (film + way, next));
-                way *= 0.5;
+            let mut step = (inverse_jacobian * -current).clamp_length_max(4.0 * self.step);
+            let is_nearer = |next: &VisiblePoint| next.mismatch(light).difference.length() < difference.length();
+            let next = (0..MAX_HALVINGS).find_map(|_| {
+                let next = object_point(film + step).filter(is_nearer).map(|next| (film + step, next));
+                step *= 0.5;
                 next
             });
-            (film, glimpse) = next?;
+            (film, visible) = next?;
         }
         None
     }
 
-    /// Returns the half width of a highlight, as a difference of the vectors that [`Glimpse::mismatch`] compares.
-    fn width(&self, glimpse: &Glimpse, light: &SmallLight) -> f64 {
-        let Seen { sin, .. } = light.seen_from(glimpse.point.position);
-        match glimpse.slopes {
+    /// Returns the half width of a highlight, as a difference of the vectors that [`VisiblePoint::mismatch`] compares.
+    fn width(&self, visible: &VisiblePoint, light: &SmallLight) -> f64 {
+        let ApparentLight { sin, .. } = light.seen_from(visible.point.position);
+        match visible.slopes {
             0.0 => sin,
-            slopes => slopes.hypot(0.5 * sin / glimpse.wo.dot(glimpse.normal)),
+            slopes => slopes.hypot(0.5 * sin / visible.wo.dot(visible.normal)),
         }
     }
 
     /// Returns how much wider an ellipse about a point of the film must be to contain the mirror image of a light.
     fn margin(&self, film: DVec2, object: u32, light: &SmallLight, radii: DMat2) -> f64 {
-        let is_lit = |glimpse: Glimpse| {
-            let Seen { sin, .. } = light.seen_from(glimpse.point.position);
-            glimpse.object == object && glimpse.mismatch(light).apart.length() < sin
+        let is_lit = |visible: VisiblePoint| {
+            let ApparentLight { sin, .. } = light.seen_from(visible.point.position);
+            visible.object == object && visible.mismatch(light).difference.length() < sin
         };
-        let is_beyond = |margin: &&f64| {
-            (0..RIM).all(|i| {
-                let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(RIM));
-                !self.look(film + radii * (DVec2::new(cos, sin) * **margin)).is_some_and(is_lit)
+        let contains_image = |margin: &&f64| {
+            (0..RIM_POINTS).all(|i| {
+                let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(RIM_POINTS));
+                !self.visible_point(film + radii * (DVec2::new(cos, sin) * **margin)).is_some_and(is_lit)
             })
         };
-        *MARGINS.iter().find(is_beyond).unwrap_or(&MARGINS[MARGINS.len() - 1])
+        *MARGINS.iter().find(contains_image).unwrap_or(&MARGINS[MARGINS.len() - 1])
     }
 
-    /// Returns the highlight at a point of the film, if it is small and its light is not occluded. `back` is the change
-    /// of the place on the film with the difference of the vectors that are compared.
-    fn highlight(&self, film: DVec2, glimpse: &Glimpse, light: &SmallLight, back: DMat2) -> Option<Highlight> {
-        let Seen { direction, sin, distance } = light.seen_from(glimpse.point.position);
-        let width = self.width(glimpse, light);
-        let (reach, peak) = match glimpse.slopes {
-            0.0 => (self.margin(film, glimpse.object, light, back * width), 0.0),
-            _ => (WIDTH, WIDTH * WIDTH),
+    /// Returns the highlight at a point of the film, if it is small and its light is not occluded. `inverse_jacobian`
+    /// is the change of the place on the film with the difference of the vectors that are compared.
+    fn highlight(
+        &self,
+        film: DVec2,
+        visible: &VisiblePoint,
+        light: &SmallLight,
+        inverse_jacobian: DMat2,
+    ) -> Option<Highlight> {
+        let ApparentLight { direction, sin, distance } = light.seen_from(visible.point.position);
+        let width = self.width(visible, light);
+        let (reach, peak) = match visible.slopes {
+            0.0 => (self.margin(film, visible.object, light, inverse_jacobian * width), 0.0),
+            _ => (ROUGH_HALF_WIDTH, ROUGH_HALF_WIDTH * ROUGH_HALF_WIDTH),
         };
-        let radii = back * (reach * width);
+        let radii = inverse_jacobian * (reach * width);
         let longest =
             0.5 * (radii.x_axis + radii.y_axis.perp()).length() + 0.5 * (radii.x_axis - radii.y_axis.perp()).length();
-        let is_small = PI * width * width * back.determinant().abs() < LARGEST && longest < LONGEST;
-        if width == 0.0 || sin >= SMALL || !is_small || glimpse.normal.dot(direction) <= 0.0 {
+        let is_small = PI * width * width * inverse_jacobian.determinant().abs() < MAX_AREA && longest < MAX_HALF_AXIS;
+        if width == 0.0 || sin >= MAX_HALF_ANGLE || !is_small || visible.normal.dot(direction) <= 0.0 {
             return None;
         }
         let world = self.world;
         let (ends, counts) =
             (RayEnds { light: light.object, ..RayEnds::default() }, |object| !world.is_see_through(object));
-        let ray = glimpse.point.leave(direction);
+        let ray = visible.point.leave(direction);
         let is_occluded = world.scene.is_occluded_by(&ray, distance, ends, &Cell::new(None), &counts);
         (!is_occluded).then(|| Highlight {
             light: light.id,

@@ -29,37 +29,37 @@ const FIRST_SENT: u64 = 256;
 
 /// What photons sent ahead found.
 #[derive(Default)]
-struct Learned {
+struct PilotPhotons {
     /// For each target, the places of its photons and whether the camera saw them.
-    found: Vec<Vec<([f64; 2], bool)>>,
+    outcomes: Vec<Vec<([f64; 2], bool)>>,
     rays: u64,
 }
 
-impl Learned {
+impl PilotPhotons {
     /// Estimates how many photons of each target can be traced with `rays` rays, from what these took.
     fn photons_per_target(&self, rays: f64) -> u64 {
-        let sent = self.found.iter().map(Vec::len).sum::<usize>() as f64;
-        (rays * sent / (self.rays as f64 * self.found.len() as f64)) as u64
+        let sent = self.outcomes.iter().map(Vec::len).sum::<usize>() as f64;
+        (rays * sent / (self.rays as f64 * self.outcomes.len() as f64)) as u64
     }
 }
 
 /// Sends photons ahead: of each target, those with the given numbers, as long as it has them. Tests whether the format
 /// sees them, even when a crop or overscan is rendered, so that all parts are rendered the same way.
-fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> Learned {
+fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> PilotPhotons {
     let world = world.of_the_format();
-    let Some(targets) = &world.photon_targets else { return Learned::default() };
+    let Some(targets) = &world.photon_targets else { return PilotPhotons::default() };
     let numbers_of = |target: &PhotonTarget| numbers.start..numbers.end.min(target.photons);
     let batches = batches(targets, numbers_of, world.method.seed ^ SEED);
     let trace_batch = |number: usize| {
         trace_batch::<N, Polarized, _>(&world, targets, batches[number], true, &splat_photon::<N, Polarized>)
     };
     let results = in_parallel(batches.len(), &trace_batch);
-    let mut learned = Learned { found: vec![Vec::new(); targets.targets.len()], rays: 0 };
+    let mut pilot_photons = PilotPhotons { outcomes: vec![Vec::new(); targets.targets.len()], rays: 0 };
     for (batch, sent) in batches.iter().zip(results) {
-        learned.rays += sent.stats.rays;
-        learned.found[batch.target].extend(sent.outcomes);
+        pilot_photons.rays += sent.stats.rays;
+        pilot_photons.outcomes[batch.target].extend(sent.outcomes);
     }
-    learned
+    pilot_photons
 }
 
 /// Returns the number of photons of each target that tell how many rays one takes.
@@ -68,13 +68,13 @@ fn first_per_target(world: &World) -> u64 {
 }
 
 /// Sends `max` photons of each target ahead, or as many as [`MAX_RAYS`] can trace, but at least [`FIRST_SENT`] in all.
-fn send_some_ahead<const N: usize>(world: &World, max: u64) -> Learned {
+fn send_some_ahead<const N: usize>(world: &World, max: u64) -> PilotPhotons {
     let first = max.min(first_per_target(world));
-    let mut learned = send_ahead::<N>(world, 0..first);
-    let more = send_ahead::<N>(world, first..max.min(learned.photons_per_target(MAX_RAYS)));
-    learned.rays += more.rays;
-    learned.found.iter_mut().zip(more.found).for_each(|(found, more)| found.extend(more));
-    learned
+    let mut pilot_photons = send_ahead::<N>(world, 0..first);
+    let more = send_ahead::<N>(world, first..max.min(pilot_photons.photons_per_target(MAX_RAYS)));
+    pilot_photons.rays += more.rays;
+    pilot_photons.outcomes.iter_mut().zip(more.outcomes).for_each(|(found, more)| found.extend(more));
+    pilot_photons
 }
 
 /// Returns the share of each light's photons that the camera sees; of many lights, of a light and its neighbors.
@@ -82,7 +82,7 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
     let mut shares = vec![0.0; world.scene.lights.len()];
     let Some(targets) = &world.photon_targets else { return shares };
     let max = (PLAN_SEEN_PHOTONS / targets.targets.len() as u64).clamp(1, MIN_SENT);
-    let found = in_lanes!(&world.method.basis, N => send_some_ahead::<N>(world, max)).found;
+    let found = in_lanes!(&world.method.basis, N => send_some_ahead::<N>(world, max)).outcomes;
     let mut counts = vec![[0_u32; 2]; shares.len()];
     for (target, photons) in targets.targets.iter().zip(found) {
         let [sent, seen] = &mut counts[target.light];
@@ -127,7 +127,7 @@ fn train<const N: usize>(world: &mut World, max: u64) {
     let Some(least) = targets.map(|target| target.photons / AHEAD).min() else { return };
     let ahead = least.min(MAX_SENT).min(max);
     if ahead >= MIN_SENT {
-        let found = send_ahead::<N>(world, 0..ahead).found;
+        let found = send_ahead::<N>(world, 0..ahead).outcomes;
         if let Some(targets) = &mut world.photon_targets {
             targets.learn(&found);
         }
@@ -180,7 +180,7 @@ mod tests {
         assert!(all > 2.0 * MAX_RAYS, "{all} rays are affordable");
         let some = send_some_ahead::<4>(&world, MIN_SENT);
         assert!((some.rays as f64 / MAX_RAYS - 1.0).abs() < 0.1, "{} rays", some.rays);
-        for (first, some) in first.found.iter().zip(&some.found) {
+        for (first, some) in first.outcomes.iter().zip(&some.outcomes) {
             assert!(some.len() > first.len() && some.starts_with(first), "{} and {}", first.len(), some.len());
         }
         // Nothing is learned from them.
@@ -205,9 +205,9 @@ mod tests {
                 "[[object]]\nmaterial = \"pane\"\nshape.quad = {{ center = [0, 0, {z}], u = [4, 0, 0], v = [0, 4, 0] }}\n"
             );
         }
-        let learned = send_ahead::<4>(&world_sending(1 << 16, &text), 0..64);
-        let sent: usize = learned.found.iter().map(Vec::len).sum();
-        let each = learned.rays as f64 / sent as f64;
+        let pilot_photons = send_ahead::<4>(&world_sending(1 << 16, &text), 0..64);
+        let sent: usize = pilot_photons.outcomes.iter().map(Vec::len).sum();
+        let each = pilot_photons.rays as f64 / sent as f64;
         assert!((30.0..300.0).contains(&each), "{each} rays");
     }
 }

@@ -169,7 +169,7 @@ impl PilotNoise {
 
     /// Returns the number of photons per sample that takes the least time to an error. Variances are never relative:
     /// otherwise, what photons show, which is bright, would be noisier than its surroundings.
-    pub fn photons_of_a_sample(&self, photons: &[PhotonWorth]) -> f64 {
+    pub fn photons_per_sample(&self, photons: &[PhotonWorth]) -> f64 {
         let work_without = |left_out: usize| self.work(photons, |_| 0.0, |_| 1.0, left_out);
         let work = work_without(self.outlier_count());
         let samples = if self.judges_whole { (work.samples * work_without(0).samples).sqrt() } else { work.samples };

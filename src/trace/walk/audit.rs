@@ -87,9 +87,9 @@ impl<'a, const N: usize> Audit<'a, N> {
             if clear && !hands_over {
                 absorbed[lane] = 0.0;
             }
-            let moved = if is_first_parting { received[lane] * parted[lane] } else { 0.0 };
-            self.open[usize::from(path.parted)][lane] -= received[lane] * absorbed[lane] + moved;
-            self.open[1][lane] += moved;
+            let parted_share = if is_first_parting { received[lane] * parted[lane] } else { 0.0 };
+            self.open[usize::from(path.parted)][lane] -= received[lane] * absorbed[lane] + parted_share;
+            self.open[1][lane] += parted_share;
         }
     }
 

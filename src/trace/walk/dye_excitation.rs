@@ -22,9 +22,9 @@ pub struct DyeExcitation<'a, const N: usize, P> {
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
     /// Whether the path continues in all ways, or in one of them.
-    pub all: bool,
+    pub follows_all: bool,
     /// The dye that the path's light excites, if the path has seen one.
-    pub seen: Option<&'a Excitation<N, P>>,
+    pub excitation: Option<&'a Excitation<N, P>>,
 }
 
 /// The ways in which the path continues.
@@ -37,24 +37,24 @@ pub struct ExcitedPaths<const N: usize, P> {
 impl<const N: usize, P: Polarization<N>> DyeExcitation<'_, N, P> {
     /// Chooses the ways that are followed.
     pub fn sample_paths(&self, sampler: &Sampler) -> ExcitedPaths<N, P> {
-        let Self { world, dyes, path, at, all, .. } = *self;
+        let Self { world, dyes, path, at, follows_all, .. } = *self;
         let [mut u, wavelength, ..] = sampler.get_random_4d(path.key.child(DYE_BRANCH), CHOICE);
         let weight = path.throughput.weight(at.context.draw.shares(path.parted));
         let (mut paths, mut shares) = (Vec::new(), Vec::new());
         at.material.shares_of_dyes(&at.context, Lanes::ONE, &mut shares);
-        let surface_dyes = dyes.of(&world.scene, at.object);
+        let surface_dyes = dyes.of_object(&world.scene, at.object);
         let chances = dyes.chances(surface_dyes.clone());
         for (number, (dye, share)) in surface_dyes.zip(shares).enumerate() {
-            let chance = chances.of(dye);
+            let chance = chances.chance(dye);
             let is_chosen = (0.0..chance).contains(&u);
             u -= chance;
-            if weight == 0.0 || !(all || is_chosen) {
+            if weight == 0.0 || !(follows_all || is_chosen) {
                 continue;
             }
             let lanes = path.throughput.of(share * (1.0 / (weight * chance)) as f32);
             let excitation = self.excitation(dye, lanes, wavelength);
             // A dye that was chosen stands for all.
-            let weight = if all { weight * chance } else { weight };
+            let weight = if follows_all { weight * chance } else { weight };
             let excited_path = Path {
                 throughput: Throughput::starting(excitation.draw.start()).scaled(weight),
                 parted: false,
@@ -64,7 +64,7 @@ impl<const N: usize, P: Polarization<N>> DyeExcitation<'_, N, P> {
             };
             paths.push((excited_path, excitation));
         }
-        let scatter_factor = match all {
+        let scatter_factor = match follows_all {
             true => 1.0,
             false if u < 0.0 => 0.0,
             false => 1.0 / (1.0 - chances.total()),
@@ -78,15 +78,15 @@ impl<const N: usize, P: Polarization<N>> DyeExcitation<'_, N, P> {
         let Self { world, dyes, path, at, .. } = *self;
         let (seen_by, draw) = (at.context.draw, world.method.basis.draw(wavelength));
         let (source, parted) = (dyes.source(dye), path.parted);
-        match self.seen {
+        match self.excitation {
             None => {
                 let (seen_by, polarization) = (seen_by.clone(), path.polarization);
                 Excitation { source, lanes, seen_by, parted, polarization, dye, draw }
             }
-            Some(seen) => {
+            Some(excitation) => {
                 let brightness =
-                    dyes.brightness(seen.dye, &ReceivedLight { source, draw: seen_by, lanes: &lanes, parted });
-                Excitation { lanes: seen.lanes * brightness as f32, dye, draw, ..seen.clone() }
+                    dyes.brightness(excitation.dye, &ReceivedLight { source, draw: seen_by, lanes: &lanes, parted });
+                Excitation { lanes: excitation.lanes * brightness as f32, dye, draw, ..excitation.clone() }
             }
         }
     }

@@ -29,18 +29,23 @@ pub struct Excitation<const N: usize, P> {
 
 impl<const N: usize, P> Excitation<N, P> {
     /// Calls `look` with what the sensor sees of light that arrives at the dye.
-    pub fn seen<T>(&self, world: &World, received: &ReceivedLight<N>, look: impl FnOnce(&ReceivedLight<N>) -> T) -> T {
+    pub fn with_received<T>(
+        &self,
+        world: &World,
+        received: &ReceivedLight<N>,
+        look: impl FnOnce(&ReceivedLight<N>) -> T,
+    ) -> T {
         let brightness = world.dyes.as_ref().map_or(0.0, |dyes| dyes.brightness(self.dye, received));
-        self.seen_of(brightness, look)
+        self.with_brightness(brightness, look)
     }
 
     /// Returns the brightness of the dye in light of one wavelength.
-    pub fn worth(&self, world: &World, light: LightId, wavelength: &Wavelength) -> f64 {
+    pub fn brightness(&self, world: &World, light: LightId, wavelength: &Wavelength) -> f64 {
         world.dyes.as_ref().map_or(0.0, |dyes| wavelength.worth(dyes.excitation(self.dye, light))[0])
     }
 
     /// Calls `look` with what the sensor sees of the dye at a brightness.
-    pub fn seen_of<T>(&self, brightness: f64, look: impl FnOnce(&ReceivedLight<N>) -> T) -> T {
+    pub fn with_brightness<T>(&self, brightness: f64, look: impl FnOnce(&ReceivedLight<N>) -> T) -> T {
         let lanes = &(self.lanes * brightness as f32);
         look(&ReceivedLight { source: self.source, draw: &self.seen_by, lanes, parted: self.parted })
     }

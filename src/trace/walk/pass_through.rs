@@ -14,7 +14,7 @@ use crate::spectrum::{Draw, Lanes};
 use crate::trace::{Transport, World, media};
 
 /// Use of the random numbers of a camera ray that hits a surface with holes.
-const COVER: u32 = 4;
+const CUTOUT: u32 = 4;
 
 /// Returns the part of a path's light that passes through a see-through surface; `None` if nothing does.
 #[cold]
@@ -32,7 +32,7 @@ pub fn pass_through_of_path<const N: usize, P: Polarization<N>>(
 }
 
 /// Returns the share of each lane that goes through the holes of a surface, which a ray inside a medium has hit.
-pub fn holes<const N: usize>(
+pub fn hole_transmittance<const N: usize>(
     world: &World,
     draw: &Draw<N>,
     ray: &Ray,
@@ -58,7 +58,7 @@ pub struct Cutout {
 }
 
 /// Decides whether a camera ray counts as having hit a surface.
-pub fn hit<const N: usize, P: Polarization<N>>(
+pub fn sample_cutout<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
     sampler: &Sampler,
@@ -71,10 +71,10 @@ pub fn hit<const N: usize, P: Polarization<N>>(
     };
     let u = match world.method.transport {
         Transport::Deterministic { .. } => 0.5,
-        Transport::Random { .. } => sampler.get_random_4d(path.key, COVER)[0],
+        Transport::Random { .. } => sampler.get_random_4d(path.key, CUTOUT)[0],
     };
     let shares = draw.shares(path.parted);
-    let share_of = |of: Lanes<N>| path.throughput.through(of).weight(shares) / path.throughput.weight(shares);
+    let share_of = |part: Lanes<N>| path.throughput.through(part).weight(shares) / path.throughput.weight(shares);
     let holes = share_of(straight.holes);
     match holes <= u {
         true => Cutout { is_hit: true, chance: 1.0 - holes, weight: 1.0 - holes },
@@ -143,23 +143,23 @@ impl VisibilityTest<'_> {
         light: impl FnOnce() -> Lanes<N>,
     ) -> Option<(Lanes<N>, P)> {
         let Self { ray, distance, ends, inside, occluders, last_occluder } = *self;
-        let (mut arriving, after);
+        let (mut arriving, polarization_after);
         if !occluders.is_all(world) || world.has_see_through() {
             let is_opaque = |object| !world.is_see_through(object) && occluders.has(world, object);
             if world.scene.is_occluded_by(ray, distance, ends, last_occluder, &is_opaque) {
                 return None;
             }
-            let (share, beyond) = self.transmittance(world, draw, polarization())?;
-            (arriving, after) = (light() * share, beyond);
+            let (share, polarization) = self.transmittance(world, draw, polarization())?;
+            (arriving, polarization_after) = (light() * share, polarization);
         } else if world.scene.is_occluded(ray, distance, ends, last_occluder) {
             return None;
         } else {
-            (arriving, after) = (light(), polarization());
+            (arriving, polarization_after) = (light(), polarization());
         }
         if let Some(material) = inside {
             arriving = arriving * media::medium(&world.scene, material).transmission(draw, distance);
         }
-        Some((arriving, after))
+        Some((arriving, polarization_after))
     }
 
     /// Returns the share of each lane that passes all surfaces before the light, and its polarization; `None` if it is
@@ -229,6 +229,6 @@ fn pass_through_of_ray<const N: usize, P: Polarization<N>>(
     let context = context(world, draw, wo, normal, uv, present, [inside; 2]);
     let material = world.scene.material_of(hit.object);
     let mut straight = material.straight(&context)?;
-    let polarization = polarization.through(material, &context, &mut straight);
+    let polarization = polarization.pass(material, &context, &mut straight);
     Some(PassThrough { straight, polarization })
 }

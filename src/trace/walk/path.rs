@@ -15,7 +15,7 @@ use crate::trace::{World, media};
 pub struct Path<const N: usize, P = Polarized> {
     pub ray: Ray,
     /// The surface that it hit last, from which its ray starts.
-    pub left: Option<Primitive>,
+    pub last_primitive: Option<Primitive>,
     pub throughput: Throughput<N>,
     /// The factor of radiance between the medium at the path's end and the camera's, times what the densities of
     /// [aimed](Self::aiming_factor) bounces change. Neither is a measure of importance.
@@ -171,7 +171,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
     fn starting(world: &World, draw: &Draw<N>, kind: PathKind, ray: Ray, media: Media, polarization: P) -> Self {
         Self {
             ray,
-            left: None,
+            last_primitive: None,
             throughput: Throughput::starting(draw.start()),
             eta_scale: 1.0,
             aiming_factor: 1.0,

@@ -36,7 +36,7 @@ impl<'a, const N: usize, P> FoundLight<'a, N, P> {
     pub fn new(world: &'a World, received: &'a ReceivedLight<'a, N>, excitation: Option<&'a Excitation<N, P>>) -> Self {
         let rgb = match excitation {
             None => received.rgb(&world.responses),
-            Some(excitation) => excitation.seen(world, received, |seen| seen.rgb(&world.responses)),
+            Some(excitation) => excitation.with_received(world, received, |seen| seen.rgb(&world.responses)),
         };
         let dispersed = received.parted || excitation.is_some_and(|excitation| excitation.parted);
         Self { world, received, excitation, rgb, dispersed }
@@ -70,21 +70,22 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     fn at_light(world: &World, ray: &Ray) -> Self;
 
     /// Returns the state after a surface that lets light pass through, and sets `straight` to the share that passes.
-    fn through(self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self;
+    fn pass(self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self;
 
-    /// Converts the shares of branches to those of the path's light, before branches are chosen, and adds to `ways` how
-    /// the state changes along each of them. Adds nothing if that can wait until one is chosen.
-    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], ways: &mut Slots<Self::RowTransfer>);
+    /// Converts the shares of branches to those of the path's light, before branches are chosen, and adds to `transfers`
+    /// how the state changes along each of them. Adds nothing if that can wait until one is chosen.
+    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], transfers: &mut Slots<Self::RowTransfer>);
 
-    /// Becomes the state along a branch, given the state `before`. `split` has computed `way` for branches that are
-    /// followed back to the lights. It is `None` for those that `forward` follows.
-    fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Self::RowTransfer>);
+    /// Becomes the state along a branch, given the state `before`. `split` has computed `transfer` for branches that
+    /// are followed back to the lights. It is `None` for those that `after_forward_scattering` follows.
+    fn follow(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, transfer: Option<&Self::RowTransfer>);
 
     /// Returns the state on the way from a surface along the unit vector `wi` to a light or panes. Converts `bsdf_cos`
     /// to that of the path.
-    fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
+    fn toward_light(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
-    /// Returns how much polarization may change light along `wi`, as X + Y + Z. `on_its_way` is by `toward` and panes.
+    /// Returns how much polarization may change light along `wi`, as X + Y + Z. `on_its_way` is by `toward_light` and
+    /// panes.
     fn change_along(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64;
 
     /// Returns how much polarization may change light that the path has hit, as X + Y + Z.
@@ -95,15 +96,15 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
 
     /// Returns the state where the path hits polarized light from the unit vector `wi`, or `None` if the light is
     /// unpolarized. Converts `emission` from what an unpolarized light would emit to what the path receives.
-    fn lit_by(&self, light: &Light<Table>, wi: DVec3, emission: &mut Lanes<N>) -> Option<Self>;
+    fn at_polarized_light(&self, light: &Light<Table>, wi: DVec3, emission: &mut Lanes<N>) -> Option<Self>;
 
     /// Returns the state of light that is followed forward, beyond a surface that it reached from the unit vector `wi`,
     /// on its way to the viewer. Converts `bsdf_cos`, of the surface as it is viewed, to that of the path's light.
-    fn forward(&self, viewed: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
+    fn after_forward_scattering(&self, viewed: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
-    /// Returns what the camera sees of a photon along a camera ray. `on_its_way` is the state by `forward` and panes,
-    /// and `viewed` is the surface as the camera sees it.
-    fn seen(
+    /// Returns what the camera sees of a photon along a camera ray. `on_its_way` is the state by
+    /// `after_forward_scattering` and panes, and `viewed` is the surface as the camera sees it.
+    fn see(
         &self,
         at: &Interaction<N>,
         viewed: &ScatterContext<N>,

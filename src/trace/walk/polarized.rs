@@ -27,7 +27,7 @@ impl Polarized {
     pub const NONE: Self = Self { degree: 0.0, growth: 1.0 };
 
     /// Returns the state after a surface of a degree, 0 to 1.
-    pub fn after(self, degree: f32) -> Self {
+    pub fn after_surface(self, degree: f32) -> Self {
         if degree == 0.0 {
             return self;
         }
@@ -39,17 +39,22 @@ impl Polarized {
     /// Returns the state after a path segment that polarizes unpolarized light like `other`.
     pub fn followed_by(self, other: Self) -> Self {
         let growth = (other.growth * self.growth).min(f32::MAX);
-        Self { growth, ..self }.after(other.degree)
+        Self { growth, ..self }.after_surface(other.degree)
     }
 
     /// Returns the state after a material has scattered light in a direction that was sampled from a density.
-    pub fn scattered<const N: usize>(self, material: &Material<Table>, context: &ScatterContext<N>, wi: DVec3) -> Self {
+    pub fn after_scattering<const N: usize>(
+        self,
+        material: &Material<Table>,
+        context: &ScatterContext<N>,
+        wi: DVec3,
+    ) -> Self {
         if let Material::Diffuse(_) = material {
             return Self { degree: 0.0, ..self };
         }
         let degree = material.degree_of_scattered(context, wi);
-        let after = self.after(degree);
-        if material.lobes().is_diffuse() { Self { degree, ..after } } else { after }
+        let scattered = self.after_surface(degree);
+        if material.lobes().is_diffuse() { Self { degree, ..scattered } } else { scattered }
     }
 
     /// Returns the state with light from the direction `wi`, polarized on its way, that a surface scatters.
@@ -60,7 +65,7 @@ impl Polarized {
         wi: DVec3,
         on_its_way: Self,
     ) -> Self {
-        self.scattered(material, context, wi).followed_by(on_its_way)
+        self.after_scattering(material, context, wi).followed_by(on_its_way)
     }
 
     /// Returns whether polarization may have changed anything, or may do so at the next surface.
@@ -87,23 +92,23 @@ impl<const N: usize> Polarization<N> for Polarized {
     }
 
     #[inline]
-    fn through(self, _: &Material<Table>, _: &ScatterContext<N>, straight: &mut Straight<N>) -> Self {
-        self.after(straight.polarization)
+    fn pass(self, _: &Material<Table>, _: &ScatterContext<N>, straight: &mut Straight<N>) -> Self {
+        self.after_surface(straight.polarization)
     }
 
     #[inline(always)]
     fn split(&self, _: &Interaction<N>, _: &mut [Branch<N>], _: &mut Slots<()>) {}
 
     #[inline(always)]
-    fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, _: Option<&()>) {
+    fn follow(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, _: Option<&()>) {
         *self = match branch.pdf {
-            Some(_) => before.scattered(at.material, &at.context, branch.wi),
-            None => before.after(branch.polarization),
+            Some(_) => before.after_scattering(at.material, &at.context, branch.wi),
+            None => before.after_surface(branch.polarization),
         };
     }
 
     #[inline(always)]
-    fn toward(&self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
+    fn toward_light(&self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
         Self::NONE
     }
 
@@ -124,16 +129,16 @@ impl<const N: usize> Polarization<N> for Polarized {
     }
 
     #[inline(always)]
-    fn lit_by(&self, _: &Light<Table>, _: DVec3, _: &mut Lanes<N>) -> Option<Self> {
+    fn at_polarized_light(&self, _: &Light<Table>, _: DVec3, _: &mut Lanes<N>) -> Option<Self> {
         None
     }
 
     #[inline(always)]
-    fn forward(&self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
+    fn after_forward_scattering(&self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
         Self::NONE
     }
 
-    fn seen(
+    fn see(
         &self,
         at: &Interaction<N>,
         viewed: &ScatterContext<N>,
@@ -174,10 +179,10 @@ mod tests {
 
     #[test]
     fn degrees_add_as_velocities_do() {
-        let twice = Polarized::NONE.after(0.5).after(0.0).after(0.5);
+        let twice = Polarized::NONE.after_surface(0.5).after_surface(0.0).after_surface(0.5);
         assert_eq!(twice, Polarized { degree: 0.8, growth: 1.25 });
-        let brewster = Polarized::NONE.after(1.0).after(0.0).after(1.0);
+        let brewster = Polarized::NONE.after_surface(1.0).after_surface(0.0).after_surface(1.0);
         assert_eq!((brewster.degree, brewster.change()), (1.0, 1.0));
-        assert!((0..1000).fold(Polarized::NONE, |path, _| path.after(1.0)).change().is_finite());
+        assert!((0..1000).fold(Polarized::NONE, |path, _| path.after_surface(1.0)).change().is_finite());
     }
 }

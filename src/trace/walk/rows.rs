@@ -318,7 +318,9 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         let exact = ReceivedLight { lanes, ..*received };
         let exact = match light.excitation {
             None => exact.rgb(&world.responses),
-            Some(dye) => dye.seen(world, &exact, |seen| seen.times(dye.polarization.first_weights(), &world.responses)),
+            Some(dye) => {
+                dye.with_received(world, &exact, |seen| seen.times(dye.polarization.first_weights(), &world.responses))
+            }
         };
         world.amount(exact) - world.amount(rgb)
     }
@@ -350,7 +352,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         Self::initial(x, world.method.polarization == Polarizing::Compared)
     }
 
-    fn through(mut self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self {
+    fn pass(mut self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self {
         let (mut mueller, mut share) = (Mueller::NONE, straight.share());
         material.mueller_of_straight(context, &mut mueller);
         let exitant = Exitant { value: share, lanes: context.present.nonzero(), z: [context.wo; 2] };
@@ -359,13 +361,13 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         self
     }
 
-    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], ways: &mut Slots<RowTransfer<N>>) {
-        ways.clear();
+    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], transfers: &mut Slots<RowTransfer<N>>) {
+        transfers.clear();
         for branch in branches {
-            let way = ways.add(RowTransfer::new);
-            way.is_polarized = !matches!(at.material, Material::Diffuse(_));
-            if !way.is_polarized {
-                way.change.x = perpendicular(branch.wi, self.x);
+            let transfer = transfers.add(RowTransfer::new);
+            transfer.is_polarized = !matches!(at.material, Material::Diffuse(_));
+            if !transfer.is_polarized {
+                transfer.change.x = perpendicular(branch.wi, self.x);
                 continue;
             }
             let incoming = branch.incoming(&at.context.present);
@@ -377,25 +379,25 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
                 Some(pdf) if at.flat == at.context.normal && !(at.parts && branch.crosses) => branch.share * pdf as f32,
                 Some(_) => bsdf_value(at, query.wi),
             };
-            let exitant = Self::set_mueller(at, query, value, &mut way.mueller);
-            way.fold_plane = drawn.map(|_| at.flat);
-            way.folded_light = None;
+            let exitant = Self::set_mueller(at, query, value, &mut transfer.mueller);
+            transfer.fold_plane = drawn.map(|_| at.flat);
+            transfer.folded_light = None;
             if let Some(folded) = Self::folded_to(at, incoming) {
                 let mut left = value;
-                self.find_change(&way.mueller, &exitant, &mut way.change, &mut left);
+                self.find_change(&transfer.mueller, &exitant, &mut transfer.change, &mut left);
                 let folded_light = self.folded_light(at, folded, [value, left], &mut branch.share);
-                way.folded_light = Some(Box::new(folded_light));
+                transfer.folded_light = Some(Box::new(folded_light));
                 continue;
             }
-            self.find_change(&way.mueller, &exitant, &mut way.change, &mut branch.share);
+            self.find_change(&transfer.mueller, &exitant, &mut transfer.change, &mut branch.share);
         }
     }
 
-    fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&RowTransfer<N>>) {
-        let Some(RowTransfer { is_polarized, mueller, change, fold_plane, folded_light }) = way else {
+    fn follow(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, transfer: Option<&RowTransfer<N>>) {
+        let Some(RowTransfer { is_polarized, mueller, change, fold_plane, folded_light }) = transfer else {
             // The branch's share is already that of the path's light.
             let mut share = branch.share;
-            *self = before.forward(&at.viewed_from(branch.wi), at.context.wo, &mut share);
+            *self = before.after_forward_scattering(&at.viewed_from(branch.wi), at.context.wo, &mut share);
             return;
         };
         if !is_polarized {
@@ -410,7 +412,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         }
     }
 
-    fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
+    fn toward_light(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
         let value = if at.flat == at.context.normal { Some(*bsdf_cos) } else { None };
         self.after_surface(at, wi, value, bsdf_cos)
     }
@@ -427,14 +429,14 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         Self::initial(self.x, self.compares)
     }
 
-    fn lit_by(&self, light: &Light<Table>, wi: DVec3, emission: &mut Lanes<N>) -> Option<Self> {
+    fn at_polarized_light(&self, light: &Light<Table>, wi: DVec3, emission: &mut Lanes<N>) -> Option<Self> {
         let (axis, degree) = light.polarization().and_then(|sky| sky.toward(wi))?;
         let (mut lit, stokes) = (*self, [1.0, degree as f32, 0.0, 0.0].map(|part| Lanes([part; N])));
         *emission = *emission * lit.receive(-wi, &Column { x: axis, stokes });
         Some(lit)
     }
 
-    fn forward(&self, viewed: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
+    fn after_forward_scattering(&self, viewed: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
         let z = -viewed.context.wo;
         if let Material::Diffuse(_) = viewed.material {
             let mut after = *self;
@@ -459,7 +461,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         after
     }
 
-    fn seen(&self, _: &Interaction<N>, _: &ScatterContext<N>, light: &Self, world: &World, ray: &Ray) -> SeenPhoton<N> {
+    fn see(&self, _: &Interaction<N>, _: &ScatterContext<N>, light: &Self, world: &World, ray: &Ray) -> SeenPhoton<N> {
         let mut after = Self::at_camera(world, ray);
         let factor = after.receive(-ray.direction, &light.column());
         let change = if self.compares { after.first_weights() + Lanes([-1.0; N]) } else { Lanes::ZERO };
@@ -472,7 +474,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
     }
 
     fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Stored, bsdf_cos: &mut Lanes<N>) -> Self {
-        let mut after = self.toward(at, wi, bsdf_cos);
+        let mut after = self.toward_light(at, wi, bsdf_cos);
         if let Some(light) = photon {
             *bsdf_cos = *bsdf_cos * after.receive(-wi, light);
         }

@@ -26,7 +26,7 @@ pub struct Walker<'a, const N: usize, P: Polarization<N> = Polarized> {
     pub pending: Slots<Path<N, P>>,
     pub branches: Vec<Branch<N>>,
     /// How polarization changes along each of the branches, where it is traced.
-    ways: Slots<P::RowTransfer>,
+    transfers: Slots<P::RowTransfer>,
     /// The object that last occluded a light, which is tested first for the next one.
     pub last_occluder: Cell<Option<u32>>,
     pub stats: Stats,
@@ -53,7 +53,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             transport,
             pending: Slots::new(),
             branches: Vec::new(),
-            ways: Slots::new(),
+            transfers: Slots::new(),
             last_occluder: Cell::new(None),
             stats: Stats::default(),
             audit: None,
@@ -67,12 +67,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         self.stats.rays += 1;
         let skips_hidden = self.world.hides_objects && path.kind.is_from_camera() && path.object_set == ObjectSet::All;
         let hit = match path.object_set {
-            ObjectSet::All if skips_hidden => self.world.scene.intersect_seen(&path.ray, path.left),
-            ObjectSet::All => self.world.scene.intersect_from(&path.ray, path.left),
-            ObjectSet::Plate => self.world.scene.intersect_plate(&path.ray, path.left, path.kind.is_from_camera()),
+            ObjectSet::All if skips_hidden => self.world.scene.intersect_seen(&path.ray, path.last_primitive),
+            ObjectSet::All => self.world.scene.intersect_from(&path.ray, path.last_primitive),
+            ObjectSet::Plate => {
+                self.world.scene.intersect_plate(&path.ray, path.last_primitive, path.kind.is_from_camera())
+            }
         };
         let skips_hidden_media = skips_hidden && self.world.has_media;
-        if skips_hidden_media && path.left.is_some() {
+        if skips_hidden_media && path.last_primitive.is_some() {
             path.switch_media(self.world, draw, self.world.media_seen_at(path.ray.origin));
         }
         let before = path.throughput;
@@ -84,7 +86,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         if skips_hidden_media {
             path.switch_media(self.world, draw, path.media.combined_with(&self.world.media_hidden_at(&path.ray, &hit)));
         }
-        path.left = Some(hit.primitive());
+        path.last_primitive = Some(hit.primitive());
         Some(SurfaceHit::new(self.world, &path.ray, hit))
     }
 
@@ -117,7 +119,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             kind == PathKind::Smooth && self.world.is_photon_target(surface_hit.hit.object, surface_hit.point.position);
         let next = self.pending.add(|| *path);
         // No light was sampled through this surface, so what the path hits beyond counts in full.
-        let (key, media) = (path.key.child(0), path.media.beyond(boundary));
+        let (key, media) = (path.key.child(0), path.media.after_crossing(boundary));
         *next = Path { scatter: None, key, media, kind, left_to_photons, ..*path };
         next.ray = surface_hit.point.leave(path.ray.direction);
         (next.vertices, next.hidden_vertices) = (path.vertices + 1, path.hidden_vertices + 1);
@@ -133,14 +135,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     /// Converts the shares of the branches to those of the path's light, which may be polarized.
     #[inline(always)]
     pub fn polarize(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
-        path.polarization.split(at, &mut self.branches, &mut self.ways);
+        path.polarization.split(at, &mut self.branches, &mut self.transfers);
     }
 
     /// Polarizes the light of branches that is followed forward, by shading normals that depend on the viewer.
     pub fn polarize_forward(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
-        self.ways.clear();
+        self.transfers.clear();
         for branch in &mut self.branches {
-            path.polarization.forward(&at.viewed_from(branch.wi), at.context.wo, &mut branch.share);
+            path.polarization.after_forward_scattering(&at.viewed_from(branch.wi), at.context.wo, &mut branch.share);
         }
     }
 
@@ -149,7 +151,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         let wide = self.branches.iter().filter(|branch| branch.pdf.is_some());
         let left_out = |branch: &Branch<N>| outgoing.weight(branch) * f64::from(outgoing.aiming_factor(branch));
         self.stats.stopped += wide.map(left_out).sum::<f64>() / outgoing.siblings();
-        self.ways.retain(|number| self.branches[number].pdf.is_none());
+        self.transfers.retain(|number| self.branches[number].pdf.is_none());
         self.branches.retain(|branch| branch.pdf.is_none());
     }
 
@@ -178,7 +180,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
                 for (number, branch) in self.branches.iter().enumerate() {
                     match outgoing.weight(branch) {
                         weight if weight < cutoff => self.stats.dropped += weight,
-                        _ => outgoing.add_pending(number, branch, self.ways.get(number), 1.0, &mut self.pending),
+                        _ => outgoing.add_pending(number, branch, self.transfers.get(number), 1.0, &mut self.pending),
                     }
                 }
             }
@@ -214,8 +216,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         let number = chosen.unwrap_or(last);
         if let Some(factor) = play_roulette(total, roulette, outgoing.path.vertices, || u[1]) {
             let factor = factor * total / weight(number);
-            let (branch, way) = (&self.branches[number], self.ways.get(number));
-            outgoing.add_pending(number, branch, way, factor, &mut self.pending);
+            let (branch, transfer) = (&self.branches[number], self.transfers.get(number));
+            outgoing.add_pending(number, branch, transfer, factor, &mut self.pending);
         }
     }
 
@@ -232,7 +234,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             if weight != 0.0
                 && let Some(factor) = play_roulette(roulette_weight, roulette, outgoing.path.vertices, u)
             {
-                outgoing.add_pending(number, branch, self.ways.get(number), factor, &mut self.pending);
+                outgoing.add_pending(number, branch, self.transfers.get(number), factor, &mut self.pending);
             }
         }
     }
@@ -297,7 +299,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         if branch.crosses { self.path.aiming_factor } else { self.path.aiming_factor * branch.eta_scale as f32 }
     }
 
-    /// Adds the pending path along a branch, which is followed with probability 1 / `factor`. `way` is how its
+    /// Adds the pending path along a branch, which is followed with probability 1 / `factor`. `transfer` is how its
     /// polarization changes, if that is known already.
     ///
     /// Paths are large, so it is built in place.
@@ -306,7 +308,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         &self,
         number: usize,
         branch: &Branch<N>,
-        way: Option<&P::RowTransfer>,
+        transfer: Option<&P::RowTransfer>,
         factor: f64,
         pending: &mut Slots<Path<N, P>>,
     ) {
@@ -325,10 +327,10 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         let counts_as_wide = wide && at.context.lobes != Lobes::NARROW;
         let next = pending.add(|| **path);
         next.ray = at.point.leave(branch.wi);
-        next.left = path.left;
+        next.last_primitive = path.last_primitive;
         next.throughput = path.throughput.through(branch.share).scaled(factor);
         (next.eta_scale, next.aiming_factor) = (path.eta_scale * branch.eta_scale, self.aiming_factor(branch));
-        next.media = if crosses { path.media.beyond(&at.boundary) } else { path.media };
+        next.media = if crosses { path.media.after_crossing(&at.boundary) } else { path.media };
         next.parted = path.parted || (at.parts && crosses);
         next.key = path.key.child(number);
         (next.vertices, next.hidden_vertices) = (path.vertices, path.hidden_vertices);
@@ -347,7 +349,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         };
         next.diffuse_left = path.diffuse_left - u32::from((wide || self.all_diffuse) && at.lobes.is_diffuse());
         next.scatter = branch.pdf.and_then(|pdf| self.scatter.map(|scatter| scatter.with_pdf(pdf, crosses)));
-        next.polarization.become_along(&path.polarization, at, branch, way);
+        next.polarization.follow(&path.polarization, at, branch, transfer);
         next.bounces = path.bounces + 1;
         next.is_seen = path.is_seen && !wide && !at.lobes.is_wide();
         next.object_set = path.object_set;

@@ -1,4 +1,4 @@
-//! The random numbers of a camera sample, and which of them are jointly well distributed.
+//! The dimensions of a camera sample: what its random numbers are used for, and which are jointly well distributed.
 //!
 //! The light that edges and bumps hide differs from place to place in a pixel. At the first surface, the directions to
 //! lights and of bounces are therefore well distributed over each part of the pixel, and not only over the whole pixel.

@@ -10,7 +10,7 @@ pub(super) const MAX_CORNERS: usize = 1 << 12;
 ///
 /// A corner is an ear if the triangle with its two neighbors lies inside. It is cut off, and the remaining polygon has
 /// ears again (Meisters 1975, *Polygons Have Ears*). A polygon may touch itself, like one that goes around a hole.
-pub(super) fn ears(corners: &[DVec2], error: f64) -> Option<Vec<[usize; 3]>> {
+pub(super) fn clip_ears(corners: &[DVec2], error: f64) -> Option<Vec<[usize; 3]>> {
     let count = corners.len();
     let ring = Ring { corners, error, next: Vec::new(), previous: Vec::new() };
     if !(3..=MAX_CORNERS).contains(&count) || ring.crosses_itself() {
@@ -113,7 +113,7 @@ mod tests {
     /// Returns whether the polygon is cut. The triangles lie side by side if none has a negative area and their total
     /// area is that of the polygon.
     fn is_cut(corners: &[DVec2]) -> bool {
-        let Some(triangles) = ears(corners, 1e-15) else { return false };
+        let Some(triangles) = clip_ears(corners, 1e-15) else { return false };
         let areas: Vec<f64> = triangles.iter().map(|corner| area(&corner.map(|at| corners[at]))).collect();
         assert_eq!(areas.len(), corners.len() - 2);
         assert!(areas.iter().all(|&area| area > 0.0), "{areas:?}");
@@ -163,19 +163,19 @@ mod tests {
     #[test]
     fn polygons_whose_sides_cross_are_not_cut() {
         let bow = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]].map(DVec2::from);
-        assert_eq!(ears(&bow, 1e-15), None);
+        assert_eq!(clip_ears(&bow, 1e-15), None);
         let star: Vec<DVec2> = (0..5).map(|i| DVec2::from_angle(f64::from(i) * 0.4 * TAU)).collect();
-        assert_eq!(ears(&star, 1e-15), None);
-        assert_eq!(ears(&[DVec2::NAN; 5], 1e-15), None);
-        assert_eq!(ears(&[DVec2::ONE; 2], 1e-15), None);
+        assert_eq!(clip_ears(&star, 1e-15), None);
+        assert_eq!(clip_ears(&[DVec2::NAN; 5], 1e-15), None);
+        assert_eq!(clip_ears(&[DVec2::ONE; 2], 1e-15), None);
     }
 
     #[test]
     fn cutting_a_polygon_of_one_point_or_one_line_ends() {
         for count in [3, 4, 50] {
-            let _ = ears(&vec![DVec2::ONE; count], 1e-15);
+            let _ = clip_ears(&vec![DVec2::ONE; count], 1e-15);
             let line: Vec<DVec2> = (0..count).map(|i| DVec2::splat((i * 7 % count) as f64)).collect();
-            let _ = ears(&line, 1e-15);
+            let _ = clip_ears(&line, 1e-15);
         }
     }
 }
