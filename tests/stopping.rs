@@ -310,9 +310,9 @@ material = "lamp"
             assert!(image.rgb_at(x, y)[0] > 1.3 * image.rgb_at((x + 8) % 64, y)[0], "{error:?}");
         })
     };
-    let found: Vec<_> = parallel_map(12, reported);
+    let found: Vec<_> = parallel_map(24, reported);
     let outliers: Vec<_> = found.iter().flatten().collect();
-    assert!(outliers.len() >= 4, "{} of 12 renders met it", outliers.len());
+    assert!(outliers.len() >= 4, "{} of 24 renders met it", outliers.len());
 }
 
 /// A speck gives all light that the pixel shows. The catcher behind it is as bright, but shows none.

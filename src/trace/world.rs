@@ -121,14 +121,19 @@ impl World {
             map_targets: None,
             light_media: Arc::default(),
         };
-        if has_media {
-            let (scene, camera) = (&world.scene, &world.scene.camera);
-            let [position, forward] = [camera.position(), camera.forward()];
-            let around = |seen| Media::around_among(scene, position, forward, &|object| scene.is_seen(object) == seen);
-            (world.camera_media, world.hidden_media) = (around(true), around(false));
-        }
+        world.find_camera_media();
         world.choose_photon_targets();
         world
+    }
+
+    /// Finds the bodies around the camera.
+    fn find_camera_media(&mut self) {
+        if self.has_media {
+            let (scene, camera) = (&self.scene, &self.scene.camera);
+            let [position, forward] = [camera.position(), camera.forward()];
+            let around = |seen| Media::around_among(scene, position, forward, &|object| scene.is_seen(object) == seen);
+            (self.camera_media, self.hidden_media) = (around(true), around(false));
+        }
     }
 
     /// Returns this world with another light pass, before any photons are sent ahead.

@@ -3,24 +3,21 @@
 use std::rc::Rc;
 
 use super::aimed_scattering::{albedo, may_aim, scatter_aimed};
-use super::catcher;
 use super::dimensions;
 use super::direct::DirectLighting;
 use super::emitter_hit::EmitterHit;
-use super::highlight_samples::add_aimed;
 use super::layer_sample::LayerSample;
 use super::light_vertex_gathering::Resampling;
 use super::sensor::{Sensor, SensorEvent};
 use super::surface::{FirstHit, PathContinuation, Surface, Through};
-use crate::film::{Layer, Sample};
+use crate::film::Layer;
 use crate::light::LightId;
 use crate::material::{Material, Straight};
-use crate::math::{BranchKey, DVec2, Sampler};
+use crate::math::Sampler;
 use crate::scene::Visibility;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::contribution::{Contribution, FoundBy};
-use crate::trace::highlight::Counted;
 use crate::trace::photon::{GatherPoint, LightVertices, PhotonMap, gather, holds_vertices};
 use crate::trace::received_light::ReceivedLight;
 use crate::trace::walk::{
@@ -77,47 +74,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         self.sensor.layers.as_mut()
     }
 
-    /// Takes one camera sample.
-    pub fn sample(&mut self, sampler: &Sampler, [x, y]: [i32; 2]) -> Sample {
-        let world = self.walker.world;
-        let camera = &world.scene.camera;
-        let four_numbers = |purpose: u32| match world.method.transport {
-            Transport::Deterministic { .. } => [0.5; 4],
-            Transport::Random { .. } => sampler.get_4d(BranchKey::CAMERA, purpose),
-        };
-        let [u, v, wavelength, _] = four_numbers(dimensions::PLACE);
-        let place = world.scene.film.filter.place([u, v]);
-        let film = DVec2::new(f64::from(x), f64::from(y)) + place;
-        let is_subtracted = world.scene.film.filter.subtracts(place);
-        let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(wavelength));
-        let ray = if camera.has_lens() {
-            let [u, v, ..] = four_numbers(dimensions::LENS);
-            camera.lens_ray(film, [u, v])
-        } else {
-            camera.ray(film)
-        };
-        if let Some(layers) = &mut self.sensor.layers {
-            layers.begin();
-        }
-        let path = Path::from_camera(world, &draw, ray);
-        if let Some(audit) = &mut self.walker.audit {
-            audit.begin(&path, &draw);
-        }
-        let (filter, highlights) = (world.scene.film.filter, world.highlights.of_pixel([x, y]));
-        self.sensor.counted = Counted::ordinary(filter, film, place - 0.5, highlights);
-        let first = self.trace(&path, &draw, sampler);
-        if let (Some(audit), Some(layers)) = (&self.walker.audit, &mut self.sensor.layers) {
-            layers.add_residual(audit, &draw);
-        }
-        if catcher::is_seen(self) {
-            let rgb = catcher::catch(self, &path, &draw, sampler);
-            return Sample { rgb, depth: None, is_subtracted };
-        }
-        if !highlights.is_empty() {
-            add_aimed(self, highlights, &draw, sampler, [x, y]);
-        }
-        let rgb = self.sensor.read_out(world, &mut self.walker.stats);
-        Sample { rgb, depth: first.map(|point| camera.depth(point.position)), is_subtracted }
+    /// Returns what the lanes of a camera sample stand for.
+    pub fn draw(&self, wavelength: f64) -> Draw<N> {
+        self.draw.clone().unwrap_or_else(|| self.walker.world.method.basis.draw(wavelength))
     }
 
     /// Returns how much gathered photons blur the last camera sample.

@@ -8,7 +8,7 @@ use super::passes::max_pass_samples;
 use super::stopping::next_stage_size;
 use crate::math::Sampler;
 use crate::trace::World;
-use crate::trace::camera::{PathTracer, SensorEvent};
+use crate::trace::camera::{PathTracer, SensorEvent, take_sample};
 use crate::trace::contribution::{Contribution, FoundBy};
 use crate::trace::pass::Pass;
 use crate::trace::photon::PassLight;
@@ -56,7 +56,7 @@ fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlie
         let rate = world.rate(pixel);
         for number in rate.own_numbers(&pass.numbers) {
             tracer.light_vertices = light.vertices(rate.average_number(number) - pass.numbers.start);
-            let sample = tracer.sample(&Sampler::of_pixel(pass.seed, pixel, number), pixel);
+            let sample = take_sample(&mut tracer, &Sampler::of_pixel(pass.seed, pixel, number), pixel);
             let splatted = world.amount(sample.rgb);
             all += splatted;
             let brighter =

@@ -8,7 +8,7 @@ use crate::math::Sampler;
 use crate::scene::Scene;
 use crate::spectrum::Curve;
 use crate::trace::World;
-use crate::trace::camera::PathTracer;
+use crate::trace::camera::{PathTracer, take_sample};
 use crate::trace::layers::Layers;
 use crate::trace::method::Method;
 use crate::trace::pass::Pass;
@@ -136,7 +136,7 @@ impl Tile {
             let average_number = rate.average_number(number);
             tracer.light_vertices = light.vertices(average_number - pass.numbers.start);
             let sampler = Sampler::of_pixel(pass.seed, pixel, number);
-            let sample = tracer.sample(&sampler, pixel);
+            let sample = take_sample(tracer, &sampler, pixel);
             let lobe = usize::from(sample.is_subtracted);
             if measures_blur {
                 blurs[lobe].add(&Sample { rgb: tracer.blur(), ..sample });

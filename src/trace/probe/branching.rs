@@ -3,7 +3,7 @@
 use crate::material::Lobes;
 use crate::math::{DVec2, DVec3, Sampler};
 use crate::trace::World;
-use crate::trace::camera::PathTracer;
+use crate::trace::camera::{PathTracer, take_sample};
 use crate::trace::width::in_lanes;
 
 /// The cost of following all branches.
@@ -32,7 +32,7 @@ fn trace_branches<const N: usize>(world: &World, max: f64) -> Branching {
     let film = world.scene.film.whole();
     let mut trace_branches = |[x, y]: [i32; 2]| {
         let before = tracer.walker.stats.rays;
-        tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
+        take_sample(&mut tracer, &Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
         (tracer.walker.stats.rays - before, tracer.walker.stats.by_chance > 0)
     };
     let max_total = max * f64::from(SIDE * SIDE);

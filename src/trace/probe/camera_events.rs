@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use crate::math::Sampler;
-use crate::trace::camera::{PathTracer, SensorEvent};
+use crate::trace::camera::{PathTracer, SensorEvent, take_sample};
 use crate::trace::photon::LightVertices;
 use crate::trace::{RAYS_OF_A_LOOK, World};
 
@@ -21,7 +21,7 @@ pub fn collect_events<const N: usize, T>(
     let mut tracer = PathTracer::<N>::new(world).with_observer(&observer);
     tracer.light_vertices = vertices;
     for (place, pixel) in (0..).zip(world.scene.film.whole().middles_of_cells(side)) {
-        tracer.sample(&Sampler::of_pixel(world.method.seed ^ seed, pixel, place), pixel);
+        take_sample(&mut tracer, &Sampler::of_pixel(world.method.seed ^ seed, pixel, place), pixel);
         if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
             break;
         }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use crate::math::{Sampler, median};
-use crate::trace::camera::PathTracer;
+use crate::trace::camera::{PathTracer, take_sample};
 use crate::trace::image::PhotonCost;
 use crate::trace::parallel::{in_parallel, on_one_thread};
 use crate::trace::pass::Pass;
@@ -79,7 +79,7 @@ fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
     if (0..world.scene.objects.len()).any(|object| is_rough(object as u32)) {
         let mut tracer = PathTracer::<N, P>::new(world);
         for &[x, y] in &pixels[..SIDE as usize] {
-            tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
+            take_sample(&mut tracer, &Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
         }
     }
     let light_paths = LightPaths::new(world, world.method.seed);
@@ -96,7 +96,7 @@ fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
         let (start, before) = (Instant::now(), tracer.walker.stats.rays);
         for &[x, y] in &pixels[numbers.start as usize..numbers.end as usize] {
             let before = tracer.walker.stats.partings;
-            tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
+            take_sample(&mut tracer, &Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
             parted.set(parted.get() + u32::from(tracer.walker.stats.partings > before));
         }
         BatchTime { time: start.elapsed(), rays: tracer.walker.stats.rays - before }

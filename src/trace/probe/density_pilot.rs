@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::cost::with_few_photons;
 use super::pilot_noise::{DARK_OFFSET, RESAMPLING_COST};
 use crate::math::Sampler;
-use crate::trace::camera::PathTracer;
+use crate::trace::camera::{PathTracer, take_sample};
 use crate::trace::contribution::add;
 use crate::trace::density::SampleDensity;
 use crate::trace::parallel::in_parallel;
@@ -148,7 +148,7 @@ fn look_at_pixel<const N: usize, P: Polarization<N>>(
         let seed = (world.method.seed ^ SEED).wrapping_add(look);
         let mut mean = [0.0; 3];
         for number in 0..SAMPLES {
-            let mut rgb = tracer.sample(&Sampler::of_pixel(seed, pixel, number), pixel).rgb;
+            let mut rgb = take_sample(tracer, &Sampler::of_pixel(seed, pixel, number), pixel).rgb;
             // A shadow catcher shows only shadows, however noisy its light is.
             let shadow = tracer.layers().map(|layers| world.layers.catcher_change(layers.sample_row().row));
             shadow.iter().for_each(|shadow| add(&mut rgb, *shadow));

@@ -6,7 +6,7 @@ use super::pilot::SampleWorth;
 use super::reached_places::{has_photon_among, has_photon_near, mean_photons_examined};
 use crate::math::{DVec3, Sampler};
 use crate::spectrum::apply;
-use crate::trace::camera::{PathTracer, SensorEvent};
+use crate::trace::camera::{PathTracer, SensorEvent, take_sample};
 use crate::trace::contribution::{Contribution, FoundBy};
 use crate::trace::pass::Pass;
 use crate::trace::photon::{PhotonMap, photons};
@@ -118,7 +118,7 @@ fn compare_maps<const N: usize>(world: &World, reached: &[DVec3]) -> Option<Gath
             for number in 0..SAMPLES {
                 let so_far = all_gathered.get();
                 let sampler = Sampler::of_pixel((world.method.seed ^ SEED).wrapping_add(u64::from(number)), [x, y], 0);
-                let found = tracer.sample(&sampler, [x, y]).rgb;
+                let found = take_sample(&mut tracer, &sampler, [x, y]).rgb;
                 let gathered = all_gathered.get();
                 let sample_gathered: [f64; 3] = std::array::from_fn(|i| gathered[i] - so_far[i]);
                 let xyz = apply(&to_xyz, sample_gathered);

@@ -8,7 +8,7 @@ use super::cost::with_few_photons;
 use super::pilot::{PhotonWorth, SIDE, mean_and_variance};
 use crate::math::Sampler;
 use crate::spectrum::apply;
-use crate::trace::camera::PathTracer;
+use crate::trace::camera::{PathTracer, take_sample};
 use crate::trace::photon::{LightVertices, PhotonMap, pilot_vertices};
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
@@ -116,7 +116,7 @@ fn measure_noise<const N: usize>(
     for [x, y] in film.whole().middles_of_cells(SIDE) {
         let values = (0..SAMPLES).map(|number| {
             let sampler = Sampler::of_pixel(world.method.seed ^ SEED, [x, y], number);
-            apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb).iter().sum::<f64>()
+            apply(&to_xyz, take_sample(&mut tracer, &sampler, [x, y]).rgb).iter().sum::<f64>()
         });
         let values: Vec<f64> = values.filter(|light| light.is_finite()).collect();
         let [mean, variance] = mean_and_variance(values.iter().copied());

@@ -5,7 +5,7 @@ use std::ops::AddAssign;
 
 use super::cost::photons_within;
 use crate::math::Sampler;
-use crate::trace::camera::PathTracer;
+use crate::trace::camera::{PathTracer, take_sample};
 use crate::trace::image::for_each_splat;
 use crate::trace::pass::Pass;
 use crate::trace::photon::photons;
@@ -80,7 +80,11 @@ pub fn for_each_light<const N: usize, P: Polarization<N>>(
         let look = &mut looks[window.cell_of(SIDE, pixel)];
         for copy in 0..copies {
             let before = tracer.walker.stats;
-            tracer.sample(&Sampler::of_pixel(world.method.seed.wrapping_add(copy as u64), [x, y], *look), [x, y]);
+            take_sample(
+                &mut tracer,
+                &Sampler::of_pixel(world.method.seed.wrapping_add(copy as u64), [x, y], *look),
+                [x, y],
+            );
             let after = tracer.walker.stats;
             let found =
                 SeenLight { light: after.light - before.light, change: after.polarization - before.polarization };

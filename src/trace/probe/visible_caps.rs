@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use crate::light::{Light, LightId};
 use crate::math::{DVec3, Sampler};
 use crate::trace::World;
-use crate::trace::camera::{PathTracer, SensorEvent};
+use crate::trace::camera::{PathTracer, SensorEvent, take_sample};
 use crate::trace::contribution::FoundBy;
 use crate::trace::width::in_lanes;
 
@@ -53,7 +53,7 @@ fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
     let places = SIDE * SIDE;
     for place in (0..places).map(|i| (i * 1597) % places) {
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
-        tracer.sample(&Sampler::of_pixel(world.method.seed ^ SEED, [x, y], place), [x, y]);
+        take_sample(&mut tracer, &Sampler::of_pixel(world.method.seed ^ SEED, [x, y], place), [x, y]);
         if hits.borrow().len() >= MAX_HITS {
             break;
         }
