@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::World;
 use super::photon_targets::PhotonTargets;
-use super::replicates::{HALF, REPLICATES};
+use super::replicates::{HALF_REPLICATES, REPLICATES};
 use crate::math::derive_seed;
 
 /// The samples that a pass takes of each pixel, and their random numbers.
@@ -60,7 +60,7 @@ impl Pass {
 
     /// Returns whether it belongs to the first half of all replicates; `None` without replicates.
     pub(super) fn is_in_first_half(&self) -> Option<bool> {
-        self.replicate.map(|replicate| replicate < HALF)
+        self.replicate.map(|replicate| replicate < HALF_REPLICATES)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::scene::text::and_more;
 use crate::shape::Shape;
 
 /// Rays that vote on a mesh: an odd number, so that one ray that grazes an edge does not decide.
-const RAYS: u32 = 5;
+const VOTING_RAYS: u32 = 5;
 /// Directions that are tried until a ray hits the mesh.
 const MAX_TRIES: u32 = 16;
 /// Maximum number of surfaces that a ray crosses.
@@ -31,7 +31,7 @@ pub(super) fn inside_out(placed: &PlacedObjects) -> Option<String> {
 }
 
 fn faces_inward(objects: &[Object], number: usize) -> bool {
-    let votes = (0..RAYS).filter_map(|ray| ray_from_inside(&objects[number].shape, ray));
+    let votes = (0..VOTING_RAYS).filter_map(|ray| ray_from_inside(&objects[number].shape, ray));
     let winding = |ray: &Ray| {
         let own = winding_number(&objects[number].shape, ray);
         if own >= 0 {

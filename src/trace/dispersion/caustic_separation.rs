@@ -19,7 +19,7 @@ const MAX_PAIR_RAYS: usize = 1024;
 /// Maximum number of lights that send rays: the brightest at a target.
 const MAX_LIGHTS: usize = 16;
 /// Colors that are apart by less than this share of the lamp's own blur look white.
-const CONTRAST: f64 = 0.05;
+const MIN_CONTRAST: f64 = 0.05;
 /// Light through an object is not seen if it is fainter than this share of the lamp's own: a color may be off by as
 /// much.
 const MIN_SHARE: f64 = 0.01;
@@ -136,7 +136,7 @@ impl Pair<'_> {
             matching_end.map_or(0.0, |end| scale * (end.0.position - a.position).length() * radius / turn)
         });
         let blur = f64::max(blur[0], blur[1]);
-        Some(if separation >= CONTRAST * blur { separation } else { 0.0 })
+        Some(if separation >= MIN_CONTRAST * blur { separation } else { 0.0 })
     }
 
     /// Returns the irradiance along a ray's way, relative to the lamp's own where it lands, by the areas that the ray's

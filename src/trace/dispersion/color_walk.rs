@@ -14,7 +14,7 @@ const MAX_SURFACES: usize = 64;
 /// Share of the light above which a fainter branch counts: half of what glass mirrors.
 const MIN_SHARE: f64 = 0.02;
 /// Rough reflectance of a glossy surface.
-const GLOSS: f64 = 0.05;
+const ROUGH_REFLECTANCE: f64 = 0.05;
 /// Use of the random numbers at a surface.
 const SURFACE: u32 = 7;
 
@@ -212,7 +212,7 @@ impl Colors<'_> {
                 // Both colors use the same facet, as if there were no others.
                 Some(surface) => mirrored(surface, wo, normal, [u[2], u[3]]).map_or(Next::Lost, Next::Toward),
             },
-            material if material.lobes().has_delta() && walk.choose_branch(GLOSS, false, choice) => {
+            material if material.lobes().has_delta() && walk.choose_branch(ROUGH_REFLECTANCE, false, choice) => {
                 Next::Toward(reflect(wo, normal))
             }
             material => {

@@ -11,7 +11,7 @@ use super::targets::{SEEN_PIXELS, Targets};
 use crate::math::{DVec2, DVec3, Sampler};
 
 /// Number of cells along each side of the view.
-const SIDE: u32 = 24;
+const CELLS_PER_SIDE: u32 = 24;
 /// Maximum number of cells that are examined after the initial ones.
 const MAX_CELLS: usize = 6000;
 /// Cells of this size or less, in pixels, are not divided.
@@ -76,10 +76,10 @@ pub fn search(colors: &Colors, targets: &Targets) -> SearchResult {
     let film = colors.world.scene.film;
     let all = f64::from(film.width) * f64::from(film.height);
     let min_area = MIN_AREA_PIXELS.min(MIN_AREA_SHARE * all);
-    let size = DVec2::new(f64::from(film.width), f64::from(film.height)) / f64::from(SIDE);
-    let corner = |i: u32| DVec2::new(f64::from(i % SIDE), f64::from(i / SIDE)) * size;
+    let size = DVec2::new(f64::from(film.width), f64::from(film.height)) / f64::from(CELLS_PER_SIDE);
+    let corner = |i: u32| DVec2::new(f64::from(i % CELLS_PER_SIDE), f64::from(i / CELLS_PER_SIDE)) * size;
     let cell = |i: u32| ViewCell { corner: corner(i), size, choice: FollowedBranch::Brighter, count: 1.0 };
-    let mut cells: Vec<ViewCell> = (0..SIDE * SIDE).map(cell).collect();
+    let mut cells: Vec<ViewCell> = (0..CELLS_PER_SIDE * CELLS_PER_SIDE).map(cell).collect();
     let (mut settled, mut reached, mut budget) = (Vec::new(), Vec::new(), MAX_CELLS);
     loop {
         let mut forks = Vec::new();
@@ -186,7 +186,7 @@ impl ViewCell {
     }
 
     fn is_undivided(&self, colors: &Colors) -> bool {
-        self.size.x * f64::from(SIDE) >= f64::from(colors.world.scene.film.width)
+        self.size.x * f64::from(CELLS_PER_SIDE) >= f64::from(colors.world.scene.film.width)
     }
 
     /// Returns its halves along each side that can be divided.

@@ -13,8 +13,8 @@ use crate::trace::width::in_lanes;
 use crate::trace::{Transport, World};
 
 /// Camera samples along each side of the image: a few to detect a room, and more to learn what lights it.
-const DETECTION_SIDE: u32 = 24;
-const SIDE: u32 = 48;
+const DETECTION_SAMPLES_PER_SIDE: u32 = 24;
+const SAMPLES_PER_SIDE: u32 = 48;
 /// Share of the way to a place that a bounce must travel to have reached what is there.
 const MIN_REACH: f64 = 0.9;
 /// Number of equally bright bounces that tell what lights a room. With fewer, or with nearly all light in as few, more
@@ -48,8 +48,8 @@ pub fn room_light(world: &World) -> RoomLight {
 
 fn learn_room_light(world: &World) -> Option<RoomLight> {
     // A few samples tell whether there is a room at all.
-    Room::of(world, bounces(world, DETECTION_SIDE), SEED)?;
-    let room = Room::of(world, bounces(world, SIDE), SEED)?;
+    Room::of(world, bounces(world, DETECTION_SAMPLES_PER_SIDE), SEED)?;
+    let room = Room::of(world, bounces(world, SAMPLES_PER_SIDE), SEED)?;
     let is_rare = !is_lit_often(&room);
     let openings = Openings::of(&room, if is_rare { MAX_PIECES } else { 1 });
     let openings = openings.and_then(|openings| bright_openings(world, &openings));
@@ -84,7 +84,7 @@ fn bright_openings(world: &World, Openings { walls, rectangles }: &Openings) -> 
     // Bounces aimed at the openings tell how much light comes through them.
     let aimed = BrightPlaces { within: *walls, places, elsewhere: 0.0, missed: 0.0, are_openings: true };
     let world = world.with_bright(Some(aimed));
-    let room = Room::of(&world, bounces(&world, SIDE), SEED)?;
+    let room = Room::of(&world, bounces(&world, SAMPLES_PER_SIDE), SEED)?;
     Some(BrightPlaces { within: *walls, are_openings: true, ..select_bright(&room, rectangles.iter().copied())? })
 }
 
