@@ -55,12 +55,12 @@ impl LitWorld {
         unlit: &World,
         pilot_world: &World,
         light: Option<RoomLight>,
-        CausticChoice { caustics, why, no_map }: CausticChoice,
+        CausticChoice { caustics, reasons: caustic_reasons, no_map }: CausticChoice,
     ) -> Self {
         let shown_pass = caustics.as_ref().map(|caustics| caustics.pass(unlit, 0.0));
         let (light_pass, why_gathered) = photon_map::with_map(scene, pilot_world, shown_pass.as_ref(), no_map);
         // Why nothing is shown matters only where nothing is gathered either.
-        let why = if shown_pass.is_some() || light_pass.is_none() { why } else { Vec::new() };
+        let caustic_reasons = if shown_pass.is_some() || light_pass.is_none() { caustic_reasons } else { Vec::new() };
         let map = light_pass.as_ref().and_then(|pass| pass.map);
         let photons = caustics.as_ref().map_or(&[][..], |caustics| &caustics.photons);
         // Without photons, what was found to light the room still holds.
@@ -74,7 +74,13 @@ impl LitWorld {
         }
         let reason = caustics.as_ref().and_then(|caustics| caustics.reason(&world));
         let left_to_chance = caustics::describe_unbounded(scene, &world);
-        let because = reason.into_iter().chain(left_to_chance).chain(why).chain(why_gathered).chain(reasons).collect();
+        let because = reason
+            .into_iter()
+            .chain(left_to_chance)
+            .chain(caustic_reasons)
+            .chain(why_gathered)
+            .chain(reasons)
+            .collect();
         Self { world, because, guided: None }
     }
 }

@@ -70,7 +70,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
         _ if spectral => {
             (bands_covering(&survey, MAX_LANES, 0, shown), "the most lanes available, for the spectra".to_owned())
         }
-        _ => (candidates[chosen].basis.clone(), least(&candidates, chosen, tolerance, is_exact)),
+        _ => (candidates[chosen].basis.clone(), lane_count_reason(&candidates, chosen, tolerance, is_exact)),
     };
     let next =
         if hero { candidates.get(chosen) } else { candidates.get(chosen + 1) }.map(|candidate| candidate.basis.clone());
@@ -124,7 +124,7 @@ fn three_bands(survey: &Survey) -> Basis {
 /// The message where no number of lanes is enough.
 const BEYOND_TOLERANCE: &str = "some color may be off by more than is tolerated";
 
-fn least(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -> String {
+fn lane_count_reason(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -> String {
     match candidates[chosen].bound() {
         _ if plain => {
             "every color is a number or rgb under the film's white, so more lanes would change nothing".into()

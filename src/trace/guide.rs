@@ -20,7 +20,7 @@ pub(super) struct Guide {
 impl Guide {
     /// Returns a density of 1 everywhere.
     pub(super) fn uniform() -> Self {
-        Self::of(|_| 1.0)
+        Self::from_probabilities(|_| 1.0)
     }
 
     /// Learns a density from some photons: their places, and whether they were seen.
@@ -72,18 +72,18 @@ impl Guide {
         }
         let everywhere =
             (0..CELLS_PER_SIDE * CELLS_PER_SIDE).filter(|&cell| touches_disk(cell)).count() as f64 / UNIFORM_SHARE;
-        Self::of(|cell| {
+        Self::from_probabilities(|cell| {
             f64::from(u8::from(touches_disk(cell))) / everywhere + (1.0 - UNIFORM_SHARE) * cell_weights[cell] / total
         })
     }
 
     /// Returns a constant density in all cells that the largest disk in the square reaches into, and 0 in the others.
     pub(super) fn disk() -> Self {
-        Self::of(|cell| f64::from(u8::from(touches_disk(cell))))
+        Self::from_probabilities(|cell| f64::from(u8::from(touches_disk(cell))))
     }
 
     /// Returns a density from the probabilities of cells, up to a factor.
-    fn of(probability: impl Fn(usize) -> f64) -> Self {
+    fn from_probabilities(probability: impl Fn(usize) -> f64) -> Self {
         Self {
             cells: Distribution2d::new(
                 [CELLS_PER_SIDE; 2],

@@ -231,9 +231,9 @@ fn half_spaces_around(
         }
     }
     let count = |planes: &[&Plane]| {
-        let around = |way: DVec3| planes.iter().filter(|plane| plane.normal().dot(perturbed(way)) < 0.0).count();
+        let count_around = |way: DVec3| planes.iter().filter(|plane| plane.normal().dot(perturbed(way)) < 0.0).count();
         let mean_normal = planes.iter().map(|plane| plane.normal()).sum::<DVec3>().try_normalize();
-        let least = [Some(direction), Some(-direction), mean_normal].into_iter().flatten().map(around).min();
+        let least = [Some(direction), Some(-direction), mean_normal].into_iter().flatten().map(count_around).min();
         planes.iter().filter(|plane| plane.is_behind(start)).count().saturating_sub(least.unwrap_or(0)) as u32
     };
     planes.into_iter().map(|(material, planes)| (material, count(&planes))).filter(|(_, count)| *count > 0).collect()

@@ -259,7 +259,7 @@ fn is_same_whole(_: &PhotonTarget, next: &PhotonTarget) -> bool {
 /// Returns the approximate flux that is sent to a whole. Some of it may have been seen only through the parts.
 fn flux(targets: &[PhotonTarget]) -> f64 {
     let (parts, wholes): (Vec<_>, Vec<_>) = targets.iter().partition(|target| target.is_part);
-    let sum = |of: Vec<&PhotonTarget>| of.iter().map(|target| target.flux).sum::<f64>();
+    let sum = |targets: Vec<&PhotonTarget>| targets.iter().map(|target| target.flux).sum::<f64>();
     f64::max(sum(wholes), sum(parts))
 }
 
@@ -271,8 +271,8 @@ pub(super) fn ball_around_all(scene: &Scene<Table>) -> Option<Ball> {
 /// Returns the ray of a path from the sky, started outside a ball around everything finite and beyond all planes.
 pub(super) fn started_outside(scene: &Scene<Table>, world: &Ball, ray: &Ray) -> Ray {
     let sky = -ray.direction;
-    let out = (world.center - ray.origin).dot(sky) + 2.0 * world.radius;
-    let mut back = Ray { origin: ray.origin + sky * out, direction: sky };
+    let distance_outside = (world.center - ray.origin).dot(sky) + 2.0 * world.radius;
+    let mut back = Ray { origin: ray.origin + sky * distance_outside, direction: sky };
     // A ray crosses a plane once.
     for _ in scene.unbounded() {
         let Some(hit) = scene.nearest(&back, f64::INFINITY, &|_| true) else { break };

@@ -124,8 +124,9 @@ impl World {
         if has_media {
             let (scene, camera) = (&world.scene, &world.scene.camera);
             let [position, forward] = [camera.position(), camera.forward()];
-            let around = |seen| Media::around_among(scene, position, forward, &|object| scene.is_seen(object) == seen);
-            (world.camera_media, world.hidden_media) = (around(true), around(false));
+            let media_around =
+                |seen| Media::around_among(scene, position, forward, &|object| scene.is_seen(object) == seen);
+            (world.camera_media, world.hidden_media) = (media_around(true), media_around(false));
         }
         world.choose_photon_targets();
         world

@@ -130,14 +130,14 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     /// Keeps what the current sample contributes to the bands of a spectral image, to be added or subtracted.
-    pub fn keep(&mut self, is_subtracted: bool) {
+    pub fn keep_spectrum(&mut self, is_subtracted: bool) {
         self.spectrum.iter_mut().for_each(|spectrum| spectrum.keep(is_subtracted));
     }
 
     /// Adds all spectra that were kept to a pixel's rows. The second row is for samples that are subtracted.
-    pub fn hand_over(&mut self, rows: [&mut [f64]; 2]) {
+    pub fn add_spectra_to(&mut self, rows: [&mut [f64]; 2]) {
         if let Some(spectrum) = &mut self.spectrum {
-            spectrum.hand_over(rows);
+            spectrum.add_sums_to(rows);
         }
     }
 

@@ -34,7 +34,7 @@ pub struct ColorWalk {
     /// Its straight segments: where each starts, and how long it is; infinite if it leaves the scene.
     pub legs: Vec<(Ray, f64)>,
     /// The objects that it met before its end.
-    pub met: Vec<u32>,
+    pub crossed_objects: Vec<u32>,
     /// Number of surfaces that deflected it, or let it enter or leave a body: `max_bounces` limits it.
     pub surfaces: u32,
     /// The surface at which it ends, and its object; `None` if it leaves the scene or is lost.
@@ -133,7 +133,7 @@ impl Colors<'_> {
         choice: FollowedBranch,
     ) -> ColorWalk {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
-        let mut walk = ColorWalk { legs, met, weight: 1.0, media, ..ColorWalk::default() };
+        let mut walk = ColorWalk { legs, crossed_objects: met, weight: 1.0, media, ..ColorWalk::default() };
         let mut key = BranchKey::CAMERA;
         for _ in 0..MAX_SURFACES {
             let hit = match is_from_camera {
@@ -160,7 +160,7 @@ impl Colors<'_> {
                 }
                 Next::Lost => break,
             }
-            walk.met.push(met.object);
+            walk.crossed_objects.push(met.object);
         }
         walk.weight = 0.0;
         walk
@@ -168,7 +168,7 @@ impl Colors<'_> {
 
     /// Returns how a walk continues at a surface. Beyond the bounce limit, surfaces show only their own light.
     fn next(&self, walk: &mut ColorWalk, at: &WalkSurface) -> Next {
-        let next = self.beyond(walk, at);
+        let next = self.continuation(walk, at);
         if !matches!(next, Next::Toward(_) | Next::End) {
             return next;
         }
@@ -181,7 +181,7 @@ impl Colors<'_> {
     }
 
     /// Returns how a walk continues at a surface, whatever the bounce limit.
-    fn beyond(&self, walk: &mut ColorWalk, at: &WalkSurface) -> Next {
+    fn continuation(&self, walk: &mut ColorWalk, at: &WalkSurface) -> Next {
         let WalkSurface { ray, surface_hit, u, choice, .. } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(&surface_hit.point, wo);

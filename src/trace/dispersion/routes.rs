@@ -23,7 +23,7 @@ pub fn routes(world: &World) -> Vec<Vec<Route>> {
         let sampler = Sampler::of_pixel(world.method.seed, [x, y], number);
         let mut walker = RouteWalker::new(world, sampler);
         let surfaces = walker.walk(ray);
-        (surfaces, walker.found)
+        (surfaces, walker.routes)
     };
     let until_enough = |surfaces: &mut usize, (more, found): (usize, Vec<Route>)| {
         let before = *surfaces;

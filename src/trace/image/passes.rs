@@ -51,7 +51,7 @@ impl Progress {
         let samples = pass.numbers.len() as u32;
         (self.samples, self.passes) = (self.samples + samples, self.passes + 1);
         if pass.replicate.is_some() {
-            self.stage = self.stage.after(samples);
+            self.stage = self.stage.after_samples(samples);
             self.sending.batches = 0;
         }
     }

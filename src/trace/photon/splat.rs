@@ -117,10 +117,10 @@ pub fn splat_photon<const N: usize, P: Polarization<N>>(
     };
     for &seen_through in all {
         let Some(connection) = CameraConnection::new(walker, photon_hit, seen_through) else { return };
-        connection.keep(connection.scattered(), splats);
+        connection.push_splats(connection.scattered(), splats);
         if let Some(dyes) = &world.dyes {
             for (number, dye) in dyes.of_object(&world.scene, photon_hit.at.object).enumerate() {
-                connection.keep(connection.emitted_by_dye(dyes, dye, number), splats);
+                connection.push_splats(connection.emitted_by_dye(dyes, dye, number), splats);
             }
         }
     }
@@ -269,7 +269,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
     }
 
     /// Keeps a splat at each place where it reaches a pixel.
-    fn keep(&self, splat: Option<Splat>, splats: &mut Vec<PlacedSplat>) {
+    fn push_splats(&self, splat: Option<Splat>, splats: &mut Vec<PlacedSplat>) {
         let film = self.walker.world.scene.film;
         let Some(splat) = splat else { return };
         let placed = self.places.iter().map(|&place| PlacedSplat { place, splat: splat.clone() });

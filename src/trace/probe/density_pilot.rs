@@ -168,8 +168,8 @@ fn smoothed_noise(cells: [u32; 2], found: &[CellSamples], pixels: Range<usize>, 
     let dark = means().map(|x| x * x).sum::<f64>() / means().count().max(1) as f64
         * if is_absolute { 1.0 } else { DARK_OFFSET };
     let relative_variance = |PixelMoments { mean, variance }: &PixelMoments| {
-        let own = |i: usize| if is_absolute { 0.0 } else { mean[i] * mean[i] };
-        (0..3).map(|i| variance[i] / (own(i) + dark).max(f64::MIN_POSITIVE)).sum::<f64>()
+        let mean_square = |i: usize| if is_absolute { 0.0 } else { mean[i] * mean[i] };
+        (0..3).map(|i| variance[i] / (mean_square(i) + dark).max(f64::MIN_POSITIVE)).sum::<f64>()
     };
     let own: Vec<f64> =
         found.iter().map(|found| found.pixels[pixels.clone()].iter().map(relative_variance).sum()).collect();

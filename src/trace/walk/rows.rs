@@ -150,8 +150,8 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     #[inline(always)]
     fn limit_degree(&mut self, i: usize) {
         let squared = self.degree_squared(i);
-        let within = 1.0 / if squared > 1.0 { squared } else { 1.0 }.sqrt();
-        self.weights[i][1..].iter_mut().for_each(|part| part[0] *= within);
+        let scale = 1.0 / if squared > 1.0 { squared } else { 1.0 }.sqrt();
+        self.weights[i][1..].iter_mut().for_each(|part| part[0] *= scale);
     }
 
     /// Passes a surface, and sets `share` to what leaves of the path's light.
