@@ -53,7 +53,7 @@ pub(super) enum PathStart {
 
 impl PathStart {
     /// Returns the start of one light's paths, given the sunlit places of some lights and the openings of a room.
-    pub(super) fn of(scene: &Scene<Table>, id: LightId, sunlit: &[SunlitPlaces], openings: &[Opening]) -> Self {
+    pub(super) fn for_light(scene: &Scene<Table>, id: LightId, sunlit: &[SunlitPlaces], openings: &[Opening]) -> Self {
         let flux = scene.lights[id].flux();
         if flux > 0.0 && flux.is_finite() {
             return Self::Anywhere;

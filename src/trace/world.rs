@@ -377,5 +377,7 @@ impl World {
 }
 
 fn path_starts(scene: &Scene<Table>, method: &Method) -> Arc<[PathStart]> {
-    (0..scene.lights.len()).map(|id| PathStart::of(scene, id, &method.sunlit, &method.openings.openings)).collect()
+    (0..scene.lights.len())
+        .map(|id| PathStart::for_light(scene, id, &method.sunlit, &method.openings.openings))
+        .collect()
 }

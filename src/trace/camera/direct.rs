@@ -37,7 +37,7 @@ pub struct DirectLighting<'a, const N: usize, P> {
     /// How bounces from here are aimed, if they are.
     pub aiming: Option<&'a Aiming<'a>>,
     /// Light vertices at which light was already estimated: what they carry no longer counts.
-    pub found_at: Option<&'a LightVertices<N>>,
+    pub vertices: Option<&'a LightVertices<N>>,
 }
 
 /// A side of the surface, from which lights are sampled.
@@ -91,7 +91,8 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
             self.gather_side(&near, sampler, sensor);
         }
         if 1.0 - u <= chance {
-            let far = Side { normal: -near.normal, inside: at.boundary.beyond, parted: parted || at.parts, ..near };
+            let far =
+                Side { normal: -near.normal, inside: at.boundary.beyond, parted: parted || at.is_parting, ..near };
             self.gather_side(&far, sampler, sensor);
         }
         chance
@@ -132,7 +133,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let at = self.lit_surface(side, drawn.light, &sample.ray);
         let (context, wi) = (&at.context, sample.ray.direction);
         let is_found = |vertices: &LightVertices<N>| vertices.carry(self.world, drawn.light, &sample.ray);
-        if wi.dot(normal) <= 0.0 || self.found_at.is_some_and(is_found) {
+        if wi.dot(normal) <= 0.0 || self.vertices.is_some_and(is_found) {
             return None;
         }
         let flat = if normal.dot(context.wo) < 0.0 { -normal } else { normal };

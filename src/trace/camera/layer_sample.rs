@@ -40,7 +40,7 @@ pub struct SampleRow<'a> {
 
 impl<'a, const N: usize> LayerSample<'a, N> {
     /// Returns `None` if no layers are requested.
-    pub fn of(world: &'a World) -> Option<Self> {
+    pub fn new(world: &'a World) -> Option<Self> {
         let Layers { row_len, .. } = world.layers;
         let (row, spectrum) = (vec![0.0; row_len], world.layers.spectrum.as_ref().map(SpectrumSample::new));
         let (share, chance, object, branches) = (0.0, 1.0, None, Vec::new());
@@ -68,7 +68,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     /// Stores the object that the camera ray hit, `None` if it went through a hole of one, and its share of the weight.
-    pub fn choose(&mut self, hit_object: Option<u32>, chance: f64) {
+    pub fn set_object(&mut self, hit_object: Option<u32>, chance: f64) {
         if self.is_aimed {
             return;
         }
@@ -207,7 +207,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
                 Some(crossing) if branch.crosses => branch.share * crossing,
                 _ => branch.share,
             };
-            let parted = path.parted || (at.parts && branch.crosses);
+            let parted = path.parted || (at.is_parting && branch.crosses);
             let rgb = white.times(draw, path.throughput.of(share), parted);
             let scale = path.eta_scale * branch.eta_scale;
             (0..3).for_each(|channel| albedo[channel] += rgb[channel] / scale);

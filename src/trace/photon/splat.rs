@@ -14,7 +14,8 @@ use crate::trace::media;
 use crate::trace::received_light::ReceivedLight;
 use crate::trace::spectrum_sample::Spectrum;
 use crate::trace::walk::{
-    DYE_BRANCH, Interaction, Occluders, Polarization, SeenPhoton, SeenThrough, VisibilityTest, Walker, parts, shading,
+    DYE_BRANCH, Interaction, Occluders, Polarization, SeenPhoton, SeenThrough, VisibilityTest, Walker, parts_lanes,
+    shading,
 };
 
 /// Use of the random numbers where the camera sees a photon: the point of the lens.
@@ -201,7 +202,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         let Interaction { context, material, .. } = at;
         let world = self.walker.world;
         let (mut bsdf_cos, _) = shading::evaluate(material, &viewed.context, viewed.flat, context.wo)?;
-        let parted = path.parted || (!same_side && parts(at.lobes, material, &viewed.context));
+        let parted = path.parted || (!same_side && parts_lanes(at.lobes, material, &viewed.context));
         let start = || path.polarization.after_forward_scattering(viewed, context.wo, &mut bsdf_cos);
         let (emission, on_its_way) = self.arriving_light(context.draw, start, || photon_hit.emission(world))?;
         let polarized = path.polarization.see(at, &viewed.context, &on_its_way, world, &self.camera_ray());

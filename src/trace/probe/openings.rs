@@ -49,7 +49,7 @@ pub struct Openings {
 
 impl Openings {
     /// Finds the openings of a room, if it has some, with `pieces` pieces of work, or fewer if they find enough.
-    pub fn of(room: &Room, pieces: usize) -> Option<Self> {
+    pub fn find(room: &Room, pieces: usize) -> Option<Self> {
         let search = OpeningSearch { room, walls: walls(room)? };
         let mut ways_out = search.ways_out(pieces);
         let mut points = Vec::new();

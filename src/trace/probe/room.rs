@@ -25,7 +25,7 @@ pub struct Room<'a> {
 
 impl<'a> Room<'a> {
     /// Returns the room of those bounces that begin inside one, if they are enough. `seed` sets random numbers apart.
-    pub fn of(world: &'a World, bounces: Vec<Bounce>, seed: u64) -> Option<Self> {
+    pub fn from_bounces(world: &'a World, bounces: Vec<Bounce>, seed: u64) -> Option<Self> {
         let all = weight(&bounces);
         let is_inside = |(number, bounce): (u32, &Bounce)| {
             is_inside(world, bounce.from, bounce.normal, &Sampler::new(world.method.seed ^ seed, [number, 0], 0))

@@ -376,7 +376,9 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
             let value = match branch.pdf {
                 None => branch.share,
                 // Where lanes part, a branch's share is that of its own lanes, and its density that of all lanes.
-                Some(pdf) if at.flat == at.context.normal && !(at.parts && branch.crosses) => branch.share * pdf as f32,
+                Some(pdf) if at.flat == at.context.normal && !(at.is_parting && branch.crosses) => {
+                    branch.share * pdf as f32
+                }
                 Some(_) => bsdf_value(at, query.wi),
             };
             let exitant = Self::set_mueller(at, query, value, &mut transfer.mueller);

@@ -290,7 +290,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
     #[inline]
     fn weight(&self, branch: &Branch<N>) -> f64 {
         let Self { path, at, .. } = self;
-        let shares = at.context.draw.shares(path.parted || (at.parts && branch.crosses));
+        let shares = at.context.draw.shares(path.parted || (at.is_parting && branch.crosses));
         path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
     }
 
@@ -331,7 +331,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         next.throughput = path.throughput.through(branch.share).scaled(factor);
         (next.eta_scale, next.aiming_factor) = (path.eta_scale * branch.eta_scale, self.aiming_factor(branch));
         next.media = if crosses { path.media.after_crossing(&at.boundary) } else { path.media };
-        next.parted = path.parted || (at.parts && crosses);
+        next.parted = path.parted || (at.is_parting && crosses);
         next.key = path.key.child(number);
         (next.vertices, next.hidden_vertices) = (path.vertices, path.hidden_vertices);
         next.length = path.length;
