@@ -31,20 +31,20 @@ impl LitWorld {
         };
         let choice = photons.choose(&pilot_noise(&photons.guided));
         let is_chosen = choice.caustics.is_some();
-        let lit = Self::with_caustics(scene, unlit, pilot_world, light, choice);
+        let lit_world = Self::with_caustics(scene, unlit, pilot_world, light, choice);
         if is_chosen {
-            return Self { guided: Some(photons.guided), ..lit };
+            return Self { guided: Some(photons.guided), ..lit_world };
         }
-        let Method { light_vertices: true, light_pass: None, .. } = lit.world.method() else { return lit };
+        let Method { light_vertices: true, light_pass: None, .. } = lit_world.world.method() else { return lit_world };
         // Light vertices remove noise next to which photons did not pay.
-        let combined = lit.world.with_light_pass(photons.guided.method().light_pass.clone());
+        let combined = lit_world.world.with_light_pass(photons.guided.method().light_pass.clone());
         let choice = photons.choose(&pilot_noise(&combined));
         if choice.caustics.is_none() {
-            return lit;
+            return lit_world;
         }
         let combined = Self::with_caustics(scene, unlit, pilot_world, None, choice);
         if !combined.world.method().light_vertices {
-            return lit;
+            return lit_world;
         }
         Self { guided: Some(photons.guided), ..combined }
     }

@@ -161,12 +161,12 @@ fn error_line(candidates: &[Candidate], basis: &Basis, bound: f64, tolerance: f6
 /// Describes emission lines that share the interpolated lanes.
 fn lines_without_lane(survey: &Survey, basis: &Basis) -> Option<String> {
     let lines = survey.lines(usize::MAX);
-    let own = lines.iter().filter(|nm| basis.wavelengths_nm().contains(nm)).count();
-    (own < lines.len()).then(|| match own {
+    let line_lanes = lines.iter().filter(|nm| basis.wavelengths_nm().contains(nm)).count();
+    (line_lanes < lines.len()).then(|| match line_lanes {
         0 if lines.len() == 1 => "the emission line is interpolated between the lanes".into(),
         0 => format!("{} emission lines are interpolated between the lanes", lines.len()),
         _ => format!(
-            "of {} emission lines the {own} brightest have lanes of their own, the others are interpolated",
+            "of {} emission lines the {line_lanes} brightest have lanes of their own, the others are interpolated",
             lines.len()
         ),
     })

@@ -60,10 +60,13 @@ impl Projection {
         let of_line = UNSEEN_WEIGHT / (ends[1] - ends[0] + 1.0);
         let mut taken = vec![vec![0.0; parts.len()]; lanes];
         for (number, part) in parts.iter().enumerate() {
-            let seen = measure_share * part.worth.iter().map(|x| x.abs()).sum::<f64>();
+            let seen_worth = measure_share * part.worth.iter().map(|x| x.abs()).sum::<f64>();
             let smooth = || unseen(part.at_nm) + shown.as_ref().map_or(0.0, |shown| shown(part.at_nm));
             let background = if number < COUNT { smooth() } else { of_line };
-            taken.iter_mut().zip(&part.shares).for_each(|(lane, share)| lane[number] = (seen + background) * share);
+            taken
+                .iter_mut()
+                .zip(&part.shares)
+                .for_each(|(lane, share)| lane[number] = (seen_worth + background) * share);
         }
         for measure in 0..measures {
             for (lane, taken) in taken.iter_mut().enumerate() {

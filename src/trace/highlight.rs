@@ -63,8 +63,8 @@ impl Highlight {
     /// Returns the first and the last column and row of the pixels whose samples may fall into the ellipse.
     fn pixels(&self, filter: Filter) -> [[i32; 2]; 2] {
         // Along an axis, an ellipse reaches as far as the hypotenuse of both radii there.
-        let along = |axis: usize| self.radii[0][axis].hypot(self.radii[1][axis]) + filter.reach() - 0.5;
-        let side = |axis: usize, sign: f64| (self.center[axis] + sign * along(axis)).floor() as i32;
+        let half_extent = |axis: usize| self.radii[0][axis].hypot(self.radii[1][axis]) + filter.reach() - 0.5;
+        let side = |axis: usize, sign: f64| (self.center[axis] + sign * half_extent(axis)).floor() as i32;
         [-1.0, 1.0].map(|sign| [0, 1].map(|axis| side(axis, sign)))
     }
 }

@@ -157,8 +157,8 @@ impl SkyStart {
         if light.sends_photons_from(ray.direction) {
             return self.beam.as_ref().is_some_and(|of| of.beam.place_in_disc(ray.origin, ray.direction).is_some());
         }
-        let back = Ray { direction: -ray.direction, ..*ray };
-        self.openings.iter().any(|opening| opening.is_entered_by(&back))
+        let reversed_ray = Ray { direction: -ray.direction, ..*ray };
+        self.openings.iter().any(|opening| opening.is_entered_by(&reversed_ray))
     }
 }
 

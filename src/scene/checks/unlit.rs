@@ -155,7 +155,7 @@ fn sees_through_a_hole(view: &View) -> bool {
 
 /// Traces paths from a lamp, a point light or a spotlight.
 fn trace_paths(view: &View, light: &Light<Curve>) -> Paths {
-    let own = if let Light::Area(area) = light { Some(area.object) } else { None };
+    let own_object = if let Light::Area(area) = light { Some(area.object) } else { None };
     let mut meets_others = false;
     for number in 0..PATHS_PER_LIGHT {
         let sampler = Sampler::new(3, [number, 0], 0);
@@ -168,7 +168,7 @@ fn trace_paths(view: &View, light: &Light<Curve>) -> Paths {
             return Paths::Seen;
         }
         let seen = view.walk(false, ray, &sampler, |place| {
-            meets_others |= own != Some(place.object);
+            meets_others |= own_object != Some(place.object);
             let shines = matches!(view.scene.material_of(place.object), Material::Emissive(_));
             !shines && view.is_seen(&place, number)
         });

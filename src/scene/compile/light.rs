@@ -32,7 +32,7 @@ pub(super) struct LightEntry {
 pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment: &mut bool) -> Option<LightEntry> {
     Fields::read(value, |entry| {
         let name = entry.maybe("name", object::name);
-        let own = entry.maybe("group", object::group);
+        let own_group = entry.maybe("group", object::group);
         let visible = entry.maybe("visible_to_camera", spanned(Value::yes_or_no));
         let kinds = ["environment", "point", "spot", "sun"].map(|kind| entry.get(kind));
         let given: Vec<Value> = kinds.into_iter().flatten().collect();
@@ -48,7 +48,7 @@ pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment
                 return last.advise("a light has exactly one kind", "start another [[light]] for the second");
             }
         };
-        let (group, visible) = (own?.or(name?), visible?);
+        let (group, visible) = (own_group?.or(name?), visible?);
         if let Some(visible) = visible.filter(|_| matches!(place.key(), "point" | "spot")) {
             let message = "point lights and spotlights are too small to be seen";
             return visible.place.advise(message, "leave `visible_to_camera` out");
@@ -137,15 +137,15 @@ fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>
         let toward = light.need("toward", direction);
         // The apparent diameter of the sun.
         let angular_diameter = light.or("angular_diameter", 0.533, |value| {
-            let across = value.number_within(0.0..=180.0, "a sun is 0 to 180 degrees across", None)?;
-            if SUN_RADIANS.contains(&across) {
-                let meant = across.to_degrees();
+            let degrees = value.number_within(0.0..=180.0, "a sun is 0 to 180 degrees across", None)?;
+            if SUN_RADIANS.contains(&degrees) {
+                let meant = degrees.to_degrees();
                 let warning = format!(
-                    "a sun of {across} degrees is hardly wider than a point; if radians are meant, write {meant:.3}"
+                    "a sun of {degrees} degrees is hardly wider than a point; if radians are meant, write {meant:.3}"
                 );
                 context.warn_at(value, warning);
             }
-            Some(across)
+            Some(degrees)
         });
         let irradiance = light.need("irradiance", |value| emission(context, value));
         let help = "toward = [1, 2, 1] is the direction from the scene to the sun";

@@ -169,8 +169,8 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let toward = || self.path.polarization.toward_light(at, wi, &mut bsdf_cos);
         let arriving = segment.arriving_light(world, context.draw, toward, light_of);
         let Some((mut arriving, on_its_way)) = arriving else { return };
-        let lit = on_its_way.at_polarized_light(&world.scene.lights[*light], wi, &mut arriving);
-        let on_its_way = lit.as_ref().unwrap_or(&on_its_way);
+        let polarized = on_its_way.at_polarized_light(&world.scene.lights[*light], wi, &mut arriving);
+        let on_its_way = polarized.as_ref().unwrap_or(&on_its_way);
         // The density of aimed bounces takes time, so it is computed only for rays that are not occluded.
         let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
             Some(aiming) => self.factor(sample, *probability, aiming.pdf(wi, *bsdf_pdf)),

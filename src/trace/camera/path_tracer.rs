@@ -347,8 +347,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             return 1.0;
         };
         let all = must_pass || self.walker.follows_all(path, at.context.draw);
-        let seen = self.excitation(path);
-        let excited = DyeExcitation { world, dyes, path, at, follows_all: all, excitation: seen.as_deref() }
+        let excitation = self.excitation(path);
+        let excited = DyeExcitation { world, dyes, path, at, follows_all: all, excitation: excitation.as_deref() }
             .sample_paths(sampler);
         for (excited_path, excitation) in excited.paths {
             let excitation = Rc::new(excitation);

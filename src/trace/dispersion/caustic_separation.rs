@@ -231,17 +231,17 @@ impl Pair<'_> {
 
     fn direct_pixel_scale(&self, point: &SurfacePoint, walk: &ColorWalk) -> Option<f64> {
         let (scene, film) = (&self.colors.world.scene, self.colors.world.scene.film);
-        let seen = scene.camera.see(point.position, [0.5; 2])?;
+        let projection = scene.camera.see(point.position, [0.5; 2])?;
         let size = DVec2::new(f64::from(film.width), f64::from(film.height));
-        let inside = seen.film.cmpge(DVec2::ZERO).all() && seen.film.cmple(size).all();
+        let inside = projection.film.cmpge(DVec2::ZERO).all() && projection.film.cmple(size).all();
         let cos_lit = -walk.last()?.direction.dot(point.normal);
-        if !inside || cos_lit * seen.direction.dot(point.normal) <= 0.0 {
+        if !inside || cos_lit * projection.direction.dot(point.normal) <= 0.0 {
             return None;
         }
-        let ray = point.leave(seen.direction);
-        let distance = (seen.start - ray.origin).length();
+        let ray = point.leave(projection.direction);
+        let distance = (projection.start - ray.origin).length();
         let hides = |object| !scene.material_of(object).lobes().is_transmissive();
         let hidden = scene.is_occluded_by(&ray, distance, None, &Cell::new(None), &hides);
-        (!hidden).then(|| (seen.importance * seen.direction.dot(point.normal).abs()).sqrt())
+        (!hidden).then(|| (projection.importance * projection.direction.dot(point.normal).abs()).sqrt())
     }
 }

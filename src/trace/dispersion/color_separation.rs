@@ -40,9 +40,9 @@ pub fn separated_share(rays: &CameraRays, middle: DVec2) -> f64 {
 /// Returns whether no walk is lost, and what they show may differ.
 fn may_differ(rays: &CameraRays, walks: [&ColorWalk; 2]) -> bool {
     let lost = walks.iter().any(|walk| walk.weight == 0.0);
-    let out = walks.iter().all(|walk| walk.leaves_scene());
+    let all_leave = walks.iter().all(|walk| walk.leaves_scene());
     // If skies are uniform, all walks that leave the scene see the same.
-    !(lost || out && skies_seen(rays.colors.world).all(Light::is_even_sky))
+    !(lost || all_leave && skies_seen(rays.colors.world).all(Light::is_even_sky))
 }
 
 /// Returns how many pixels apart two colors show what lies behind.

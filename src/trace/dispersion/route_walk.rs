@@ -258,14 +258,15 @@ impl<'a> RouteWalker<'a> {
         let (world, light) = (self.world, &self.world.scene.lights[id]);
         let Some(sample) = light.sample_li(at.point, normal, [at.u[1], at.u[0]]) else { return };
         let mut walk = RouteWalk { ray: sample.ray, ..walk.clone() };
-        let mut left = sample.distance;
+        let mut remaining_distance = sample.distance;
         for _ in 0..MAX_SURFACES {
-            let Some(hit) = world.scene.nearest(&walk.ray, left, &|object| sample.object != Some(object)) else {
-                let walk = self.inside(walk, left);
+            let Some(hit) = world.scene.nearest(&walk.ray, remaining_distance, &|object| sample.object != Some(object))
+            else {
+                let walk = self.inside(walk, remaining_distance);
                 return self.record(&walk, id);
             };
             walk = self.inside(walk, hit.intersection.t);
-            left -= hit.intersection.t;
+            remaining_distance -= hit.intersection.t;
             let object = &world.scene.objects[hit.object as usize];
             let surface_hit = SurfaceHit::new(world, &walk.ray, hit);
             let point = &surface_hit.point;

@@ -139,18 +139,18 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         let world = walker.world;
         let (camera, film) = (&world.scene.camera, world.scene.film);
         let u = if camera.has_lens() { photon.sampler.get_random_4d(path.key, LENS) } else { [0.5; 4] };
-        let seen = camera.see(point.position, [u[0], u[1]])?;
+        let projection = camera.see(point.position, [u[0], u[1]])?;
         let (window, reach) = (film.window(), film.filter.reach());
-        let mut places = camera.places(seen.film, reach + f64::from(film.overscan.widest()));
+        let mut places = camera.places(projection.film, reach + f64::from(film.overscan.widest()));
         let [first, end] = window.ends().map(|place| place.map(|x| x as f64));
         let near = |x: f64, axis: usize| x >= first[axis] - reach && x <= end[axis] + reach;
         places.retain(|place| near(place.x, 0) && near(place.y, 1));
         if places.is_empty() {
             return None;
         }
-        let same_side = seen.direction.dot(*flat) > 0.0;
-        let viewed = at.viewed_from(seen.direction);
-        Some(Self { walker, photon_hit, projection: seen, places, same_side, viewed, seen_through })
+        let same_side = projection.direction.dot(*flat) > 0.0;
+        let viewed = at.viewed_from(projection.direction);
+        Some(Self { walker, photon_hit, projection, places, same_side, viewed, seen_through })
     }
 
     /// Returns what reaches the camera of light that leaves the place toward it, and how it is polarized on its way.

@@ -72,8 +72,8 @@ fn is_lit_often(room: &Room) -> bool {
 
 /// Returns the bright places among those that bounces found.
 fn bright_places(room: &Room) -> Option<BrightPlaces> {
-    let lit = room.bounces.iter().filter(|bounce| bounce.light > 0.0);
-    let points: Vec<(DVec3, f64)> = lit.map(|bounce| (room.end_of(bounce), bounce.light)).collect();
+    let lit_bounces = room.bounces.iter().filter(|bounce| bounce.light > 0.0);
+    let points: Vec<(DVec3, f64)> = lit_bounces.map(|bounce| (room.end_of(bounce), bounce.light)).collect();
     select_bright(room, clusters(points, MAX_PLACES).iter().map(Cluster::rectangle))
 }
 

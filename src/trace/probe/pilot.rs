@@ -89,10 +89,10 @@ fn measure_group<const N: usize>(
     let (mut values, mut photons, mut rays) = (Vec::new(), 0, 0);
     for image in 0..IMAGE_COUNT {
         world.method.seed = (whole.method.seed ^ SEED).wrapping_add(image);
-        let mut seen = Vec::new();
-        let sent = for_each_splat::<N, Polarized>(world, &mut |pixel, splat| seen.push((pixel, splat.rgb)));
+        let mut splats = Vec::new();
+        let sent = for_each_splat::<N, Polarized>(world, &mut |pixel, splat| splats.push((pixel, splat.rgb)));
         (photons, rays) = (photons + sent.photons, rays + sent.stats.rays);
-        values.extend(sum_by_pixel(seen).into_iter().map(|(pixel, rgb)| {
+        values.extend(sum_by_pixel(splats).into_iter().map(|(pixel, rgb)| {
             let [x, y, z] = apply(&to_xyz, rgb);
             (pixel, [x, y, z, x + y + z])
         }));

@@ -260,9 +260,9 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         let value = value.unwrap_or_else(|| bsdf_value(at, query.wi));
         let exitant = Self::set_mueller(at, query, value, &mut mueller);
         if let Some(folded) = Self::folded_to(at, incoming) {
-            let mut left = value;
-            after.pass_surface(&mueller, &exitant, &mut left);
-            let folded_light = self.folded_light(at, folded, [value, left], bsdf_cos);
+            let mut leaving = value;
+            after.pass_surface(&mueller, &exitant, &mut leaving);
+            let folded_light = self.folded_light(at, folded, [value, leaving], bsdf_cos);
             after.merge_folded(self, &folded_light, -wi, at.flat);
             return after;
         }
@@ -385,9 +385,9 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
             transfer.fold_plane = drawn.map(|_| at.flat);
             transfer.folded_light = None;
             if let Some(folded) = Self::folded_to(at, incoming) {
-                let mut left = value;
-                self.find_change(&transfer.mueller, &exitant, &mut transfer.change, &mut left);
-                let folded_light = self.folded_light(at, folded, [value, left], &mut branch.share);
+                let mut leaving = value;
+                self.find_change(&transfer.mueller, &exitant, &mut transfer.change, &mut leaving);
+                let folded_light = self.folded_light(at, folded, [value, leaving], &mut branch.share);
                 transfer.folded_light = Some(Box::new(folded_light));
                 continue;
             }
