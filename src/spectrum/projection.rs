@@ -79,7 +79,7 @@ impl Projection {
         let gram =
             taken.iter().map(|taken| (0..lanes).map(|j| taken.iter().zip(parts).map(of_lane(j)).sum()).collect());
         let gram = gram.collect();
-        Self { lines_nm: parts[COUNT..].iter().map(|part| part.at_nm).collect(), taken: taken, gram }
+        Self { lines_nm: parts[COUNT..].iter().map(|part| part.at_nm).collect(), taken, gram }
     }
 
     /// Returns the number of each lane, for a spectrum that can be read at any wavelength in nm.
