@@ -48,7 +48,8 @@ fn mirrored(reflectance: f64) -> [f64; 3] {
     [1.0, 2.0, 0.5].map(|color| reflectance * SUN * color * share)
 }
 
-/// Renders a text with so many samples that even those which miss the light are many: one in 160 at the edge of the sun.
+/// Renders a text with so many samples that even those which miss the light are many: one in 160, at the
+/// edge of the sun.
 fn films(text: &str, seeds: Range<u64>) -> (Method, Mean) {
     let scene = scene(text);
     let method = Method { samples: 256, ..plan(&scene).method };

@@ -191,6 +191,9 @@ fn pixel_text(pixel: &WorstPixel) -> String {
 fn noise_text(diff: &Difference, noise: &Noise) -> String {
     let [pixel, channel] = noise.at;
     let ([x, y], channel) = (diff.bounds.place(pixel), &diff.channels[channel]);
-    let beyond = if noise.beyond > 0 { format!("; {} above that", noise.beyond) } else { String::new() };
-    format!("worst {:.1} in {channel} of ({x}, {y}), chance explains up to {:.1}{beyond}", noise.worst, noise.threshold)
+    let count_above = if noise.beyond > 0 { format!("; {} above that", noise.beyond) } else { String::new() };
+    format!(
+        "worst {:.1} in {channel} of ({x}, {y}), chance explains up to {:.1}{count_above}",
+        noise.worst, noise.threshold
+    )
 }

@@ -36,13 +36,13 @@ struct Counts {
 }
 
 impl Counts {
-    fn done(&self) -> u64 {
+    fn work_done(&self) -> u64 {
         self.done.load(Ordering::Relaxed)
     }
 
     /// Returns the total work that will be done within the time limit, at the pace so far.
     fn total(&self) -> u64 {
-        let (done, work) = (self.done(), self.work.load(Ordering::Relaxed));
+        let (done, work) = (self.work_done(), self.work.load(Ordering::Relaxed));
         let Some(limit) = self.limit.filter(|_| done > self.before) else { return work };
         let times = limit.as_secs_f64() / self.start.elapsed().as_secs_f64();
         let in_time = self.before + ((done - self.before) as f64 * times) as u64;
@@ -50,8 +50,8 @@ impl Counts {
     }
 
     /// Returns the seconds left, if they are known.
-    fn left(&self) -> Option<f64> {
-        let (done, total) = (self.done(), self.total().max(1));
+    fn remaining_seconds(&self) -> Option<f64> {
+        let (done, total) = (self.work_done(), self.total().max(1));
         let parts = [self.before, done].map(|count| count as f64 / total as f64);
         let is_known = self.is_known.load(Ordering::Relaxed) && done > self.before;
         is_known.then(|| left(parts, self.start.elapsed().as_secs_f64()))
@@ -59,7 +59,7 @@ impl Counts {
 
     /// Returns the time passed and the time left, in words.
     fn time_message(&self) -> String {
-        times(self.start.elapsed().as_secs_f64(), self.left())
+        times(self.start.elapsed().as_secs_f64(), self.remaining_seconds())
     }
 }
 
@@ -143,7 +143,7 @@ impl Progress {
 
     /// Returns the time left in words, if it is known.
     pub fn left(&self) -> Option<String> {
-        self.counts.left().map(in_words)
+        self.counts.remaining_seconds().map(in_words)
     }
 
     /// Removes the bar, prints how long the render took and how long it was expected to take, and returns the former.
@@ -193,8 +193,8 @@ fn style() -> ProgressStyle {
 
 /// Prints how much of the work is done.
 fn print(counts: &Counts) {
-    let (done, total, seconds) = (counts.done(), counts.total(), counts.start.elapsed().as_secs_f64());
-    let left = counts.left();
+    let (done, total, seconds) = (counts.work_done(), counts.total(), counts.start.elapsed().as_secs_f64());
+    let left = counts.remaining_seconds();
     report([done, total], seconds, left, &line(share([done, total]), seconds, left));
 }
 

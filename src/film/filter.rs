@@ -42,9 +42,9 @@ pub enum Filter {
 }
 
 /// The distance at which the normal distribution is cut off, in standard deviations. 0.03 % of it lies beyond.
-const CUT: f64 = 4.0;
-/// The fraction of the two-dimensional normal distribution within [`CUT`]: 1 - exp(-CUT^2 / 2).
-const SHARE_WITHIN: f64 = 0.9996645373720975;
+const CUTOFF: f64 = 4.0;
+/// The fraction of the two-dimensional normal distribution within [`CUTOFF`]: 1 - exp(-CUTOFF^2 / 2).
+const SHARE_WITHIN_CUTOFF: f64 = 0.9996645373720975;
 /// The maximum distance of a sample from the center of its pixel, on one axis.
 const MAX_REACH: f64 = 16.0;
 /// The coefficients of the Blackman-Harris window.
@@ -86,7 +86,11 @@ impl Filter {
             Self::Tent { radius } => separable(&|x| (1.0 - x.abs() / radius).max(0.0) / radius),
             Self::Gaussian { sigma } => {
                 let squared = offset.length_squared() / (sigma * sigma);
-                if squared < CUT * CUT { libm::exp(-0.5 * squared) / (TAU * sigma * sigma * SHARE_WITHIN) } else { 0.0 }
+                if squared < CUTOFF * CUTOFF {
+                    libm::exp(-0.5 * squared) / (TAU * sigma * sigma * SHARE_WITHIN_CUTOFF)
+                } else {
+                    0.0
+                }
             }
             Self::BlackmanHarris { radius } => separable(&|x| {
                 if x.abs() >= radius {
@@ -128,7 +132,7 @@ impl Filter {
         match self {
             Self::Box | Self::Center => 0.5,
             Self::Tent { radius } | Self::BlackmanHarris { radius } => radius,
-            Self::Gaussian { sigma } => CUT * sigma,
+            Self::Gaussian { sigma } => CUTOFF * sigma,
             Self::Mitchell(_) => RADIUS,
         }
     }
@@ -163,7 +167,7 @@ impl Filter {
         match self {
             Self::Box | Self::Center | Self::Mitchell(_) => None,
             Self::Tent { radius } | Self::BlackmanHarris { radius } => Some(("radius", radius, MAX_REACH)),
-            Self::Gaussian { sigma } => Some(("sigma", sigma, MAX_REACH / CUT)),
+            Self::Gaussian { sigma } => Some(("sigma", sigma, MAX_REACH / CUTOFF)),
         }
     }
 }
@@ -173,8 +177,8 @@ fn sample_tent(u: f64) -> f64 {
     if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 * (1.0 - u)).sqrt() }
 }
 
-/// Samples the two-dimensional normal distribution within [`CUT`]. Maps the numbers to a disk and stretches its radii,
-/// so that strata stay compact.
+/// Samples the two-dimensional normal distribution within [`CUTOFF`]. Maps the numbers to a disk and stretches its
+/// radii, so that strata stay compact.
 ///
 /// The disk has the fraction rho^2 of its area within radius rho, the distribution 1 - exp(-r^2 / 2) within r.
 fn sample_normal(u: [f64; 2]) -> DVec2 {
@@ -183,7 +187,7 @@ fn sample_normal(u: [f64; 2]) -> DVec2 {
     if squared == 0.0 {
         return DVec2::ZERO;
     }
-    let stretched = -2.0 * libm::log1p(-SHARE_WITHIN * squared.min(1.0));
+    let stretched = -2.0 * libm::log1p(-SHARE_WITHIN_CUTOFF * squared.min(1.0));
     point * (stretched / squared).sqrt()
 }
 
@@ -228,6 +232,6 @@ mod tests {
 
     #[test]
     fn the_share_within_the_cut_is_that_of_the_normal_distribution() {
-        assert_eq!(SHARE_WITHIN, -libm::expm1(-0.5 * CUT * CUT));
+        assert_eq!(SHARE_WITHIN_CUTOFF, -libm::expm1(-0.5 * CUTOFF * CUTOFF));
     }
 }

@@ -276,13 +276,13 @@ impl<S> Area<S> {
     /// direction that does not lead there. `guide` is the density of places in the unit square.
     pub(super) fn pdf_le(&self, ball: &Ball, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         let Some(EmissionPoint { point, density, .. }) = &sample.surface else { return 0.0 };
-        let along = self.toward(ball, point).pdf(sample.ray.direction, guide);
+        let direction_pdf = self.toward(ball, point).pdf(sample.ray.direction, guide);
         let point_pdf = match (density, self.sphere_and_cap()) {
             (Some(density), _) => *density,
             (None, Some((sphere, cap))) => sphere.pdf_cap_emission(cap, ball, point),
             (None, None) => self.shape.pdf_emission(ball, point),
         };
-        along * point_pdf
+        direction_pdf * point_pdf
     }
 
     fn toward<'a>(&self, ball: &'a Ball, point: &SurfacePoint) -> TowardBall<'a> {

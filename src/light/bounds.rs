@@ -37,8 +37,8 @@ impl LightBounds {
     ///
     /// A convex body shows a quarter of its area on average (Cauchy 1841).
     pub(super) fn of_shape(shape: &Shape, two_sided: bool) -> Option<Self> {
-        let seen = if shape.is_closed() { 0.25 } else { 1.0 };
-        let intensity = seen * shape.area();
+        let visible_share = if shape.is_closed() { 0.25 } else { 1.0 };
+        let intensity = visible_share * shape.area();
         Some(Self { bounds: shape.bounds()?, normal: shape.flat_normal(), two_sided, intensity })
     }
 

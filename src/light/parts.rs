@@ -29,7 +29,7 @@ pub struct MeshPartsCache(HashMap<*const Mesh, (Arc<Mesh>, Option<Arc<PartDistri
 
 impl MeshPartsCache {
     /// Returns the parts of a mesh that emits evenly.
-    fn of(&mut self, mesh: &Arc<Mesh>) -> Option<Arc<PartDistributions>> {
+    fn distributions_of(&mut self, mesh: &Arc<Mesh>) -> Option<Arc<PartDistributions>> {
         // The mesh is kept alive here, so its address stays unique.
         let new = || (mesh.clone(), PartDistributions::new(&Shape::Mesh(mesh.clone()), |_| 1.0).map(Arc::new));
         self.0.entry(Arc::as_ptr(mesh)).or_insert_with(new).1.clone()
@@ -57,7 +57,7 @@ impl LightParts {
             _ => None,
         };
         let Some((mesh, placement)) = mesh_and_placement else { return Self::of(shape, |_| 1.0) };
-        Some(Self { shared: cache.of(mesh)?, placement })
+        Some(Self { shared: cache.distributions_of(mesh)?, placement })
     }
 
     /// Returns the parts of a shape, where an area of each is weighted by `weight`; `None` if it has only one.

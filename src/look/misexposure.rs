@@ -51,8 +51,11 @@ impl Misexposure {
         }
         let to_rec709 = film.color_space.to_rec709();
         let exposure = Exposure { stops, ..Exposure::default() };
-        Counts::of(exposure, film.pixels.iter().map(|pixel| (apply(&to_rec709, pixel.rgb.map(f64::from)), pixel.alpha)))
-            .misexposure()
+        Counts::count(
+            exposure,
+            film.pixels.iter().map(|pixel| (apply(&to_rec709, pixel.rgb.map(f64::from)), pixel.alpha)),
+        )
+        .misexposure()
     }
 
     /// Checks a picture of a layer of a file. Returns none if the layer has no colors.
@@ -62,7 +65,7 @@ impl Misexposure {
         let alpha = |at: usize| alpha.map_or(0.0, |alpha| alpha.at(at) as f32);
         let pixels = (0..layer.part.bounds.pixels())
             .map(|at| (apply(&to_rec709, color.map(|channel| channel.at(at))), alpha(at)));
-        Counts::of(exposure, pixels).misexposure()
+        Counts::count(exposure, pixels).misexposure()
     }
 }
 
@@ -111,7 +114,7 @@ impl LitCounts {
 
 impl Counts {
     /// Counts pixels, given in linear Rec.709 with alpha.
-    fn of(exposure: Exposure, pixels: impl Iterator<Item = ([f64; 3], f32)>) -> Self {
+    fn count(exposure: Exposure, pixels: impl Iterator<Item = ([f64; 3], f32)>) -> Self {
         let mut counts = Self { all: 0, lit: LitCounts::new(), covered: LitCounts::new(), seen: 0 };
         let gain = libm::exp2(exposure.stops);
         for (rgb, alpha) in pixels {
@@ -152,7 +155,7 @@ mod tests {
     /// Checks a picture of grays, each with its alpha.
     fn misexposure_of(grays: &[(f64, f32)], stops: f64) -> Option<Misexposure> {
         let exposure = Exposure { stops, ..Exposure::default() };
-        Counts::of(exposure, grays.iter().map(|&(gray, alpha)| ([gray; 3], alpha))).misexposure()
+        Counts::count(exposure, grays.iter().map(|&(gray, alpha)| ([gray; 3], alpha))).misexposure()
     }
 
     #[test]

@@ -35,7 +35,7 @@ const ROWS: usize = 2 * ROWS_PER_SIDE + 1;
 const MAX_SQRT_LN: f64 = 1.52;
 
 /// Number of steps of a row over the cosine.
-const STEPS: usize = 64;
+const COSINE_STEPS: usize = 64;
 
 /// The transmittance of a coat.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -217,7 +217,7 @@ fn neighboring_rows(rows: &Rows, m: f64, row: impl Fn(f64) -> AlbedoTable) -> [(
 fn row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     // Exactly at the horizon a rough surface still lets light in, unlike a smooth one.
     let (facets, visible) = (surface.facets(), surface.facets().visible(m));
-    AlbedoTable::new(facets.alpha(), STEPS, |z| {
+    AlbedoTable::new(facets.alpha(), COSINE_STEPS, |z| {
         let z = z.max(HORIZON);
         visible.mean(z, SingleReflectance { facets: *facets, m }) - (1.0 - Interface::new(1.0, m, z).transmittance)
     })
@@ -241,7 +241,7 @@ impl FacetFunction for SingleReflectance {
 /// one of the same relative index m.
 fn polarized_row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     let (facets, visible) = (surface.facets(), surface.facets().visible(m));
-    AlbedoTable::new(facets.alpha(), STEPS, |z| {
+    AlbedoTable::new(facets.alpha(), COSINE_STEPS, |z| {
         let z = z.max(HORIZON);
         visible.mean(z, ReflectedPolarization { facets: *facets, m }) - Block::at_boundary([1.0, m, z], false).d
     })
@@ -268,7 +268,7 @@ impl FacetFunction for ReflectedPolarization {
 fn kernel(surface: &RoughSurface) -> FilmKernel {
     let (facets, visible) = (surface.facets(), surface.facets().visible(1.0));
     // This takes the body to be denser than its surroundings, which it nearly always is.
-    FilmKernel::new(facets.alpha(), 1.0, STEPS, |z, add| {
+    FilmKernel::new(facets.alpha(), 1.0, COSINE_STEPS, |z, add| {
         for ([wo, h], weight) in visible.from(z.max(HORIZON)) {
             let [_, missing] = facets.unshadowed_and_shadowed(wo, reflect(wo, h));
             add(wo.dot(h), weight, [missing, 1.0]);

@@ -55,13 +55,16 @@ impl Facet {
         let interface = Interface::new(n1, n2, wo.dot(h));
         let (reflected, crossing) = (interface.reflectance, interface.transmittance);
         let above = known_wi.filter(|wi| wi.z > 0.0).unwrap_or_else(|| reflect(wo, h));
-        let beyond = known_wi.filter(|wi| wi.z < 0.0).unwrap_or_else(|| interface.refract(wo, h));
+        let transmitted_wi = known_wi.filter(|wi| wi.z < 0.0).unwrap_or_else(|| interface.refract(wo, h));
         let [left, missing] = facets.unshadowed_and_shadowed(wo, above);
-        let [passed, lost] =
-            if crossing > 0.0 && beyond.z < 0.0 { facets.passed(wo, beyond, straight) } else { [0.0, 1.0] };
+        let [passed, lost] = if crossing > 0.0 && transmitted_wi.z < 0.0 {
+            facets.passed(wo, transmitted_wi, straight)
+        } else {
+            [0.0, 1.0]
+        };
         Self {
             h,
-            directions: [above, beyond],
+            directions: [above, transmitted_wi],
             single: [reflected * left, crossing * passed],
             unshadowed: [left, passed],
             multiple: reflected * missing + crossing * lost,

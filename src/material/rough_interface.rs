@@ -33,7 +33,7 @@ const RATIO_STEPS: usize = 160;
 /// about its square root.
 const LOG_RATIO_RANGE: [f64; 2] = [1e-4, LN_10];
 /// Steps of a row over the cosine.
-const STEPS: usize = 192;
+const COSINE_STEPS: usize = 192;
 /// Steps of a row of a film's kernel over the cosine.
 const KERNEL_STEPS: usize = 64;
 
@@ -117,7 +117,9 @@ fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
 /// index beyond is `ratio` times that on this side.
 fn missing_energy(facets: &Facets, ratio: f64) -> AlbedoTable {
     let (straight, visible) = (straight(ratio), facets.visible(ratio));
-    AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, SecondFacetShare { facets: *facets, ratio, straight }))
+    AlbedoTable::new(facets.alpha(), COSINE_STEPS, |z| {
+        visible.mean(z, SecondFacetShare { facets: *facets, ratio, straight })
+    })
 }
 
 /// The share of light that meets a second facet.

@@ -16,10 +16,10 @@ pub struct Roughness {
 }
 
 /// Width of the facets' slopes, alpha, below which a surface counts as smooth.
-const SMOOTH: f64 = 1e-4;
+const MAX_SMOOTH_ALPHA: f64 = 1e-4;
 /// Alpha below which a lobe counts as narrow. Photons then find the light that the surface sends on faster than random
 /// scattering does, by a factor of two or more at half this width (`benches/README.md`).
-const NARROW: f64 = 0.1;
+const MAX_NARROW_ALPHA: f64 = 0.1;
 
 impl Roughness {
     /// Makes a surface of roughness `value`. The width alpha of its facets' slopes is the square of that.
@@ -35,8 +35,8 @@ impl Roughness {
     /// Returns the kind of lobe in which the surface reflects.
     pub fn reflection(&self) -> Lobes {
         match self.alpha() {
-            ..SMOOTH => Lobes::DELTA_REFLECTION,
-            ..NARROW => Lobes::NARROW_REFLECTION,
+            ..MAX_SMOOTH_ALPHA => Lobes::DELTA_REFLECTION,
+            ..MAX_NARROW_ALPHA => Lobes::NARROW_REFLECTION,
             _ => Lobes::GLOSSY_REFLECTION,
         }
     }
@@ -45,8 +45,8 @@ impl Roughness {
     /// light passes straight through, however rough the boundary is.
     pub fn of_interface(&self) -> Lobes {
         match self.alpha() {
-            ..SMOOTH => Lobes::DELTA,
-            ..NARROW => Lobes::NARROW.union(Lobes::DELTA),
+            ..MAX_SMOOTH_ALPHA => Lobes::DELTA,
+            ..MAX_NARROW_ALPHA => Lobes::NARROW.union(Lobes::DELTA),
             _ => Lobes::GLOSSY_REFLECTION.union(Lobes::GLOSSY_TRANSMISSION).union(Lobes::DELTA),
         }
     }
@@ -65,7 +65,7 @@ impl Roughness {
 
     /// Returns whether the surface is too smooth to be distinguished from a mirror.
     pub fn is_smooth(&self) -> bool {
-        self.alpha() < SMOOTH
+        self.alpha() < MAX_SMOOTH_ALPHA
     }
 
     /// Returns the reflecting surface, or None if it is smooth.
@@ -107,7 +107,7 @@ pub struct RoughReflection {
 }
 
 /// Steps of the table over the cosine.
-const STEPS: usize = 64;
+const COSINE_STEPS: usize = 64;
 
 impl RoughSurface {
     fn new(alpha: f64) -> Self {
@@ -191,7 +191,7 @@ pub(super) fn to_local_above(frame: &Frame, wo: DVec3) -> DVec3 {
 /// Tabulates the share of light from each cosine that meets a second facet, the mean over the visible facets.
 fn missing_energy(facets: &Facets) -> AlbedoTable {
     let visible = facets.visible(1.0);
-    AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, ShadowedShare(*facets)))
+    AlbedoTable::new(facets.alpha(), COSINE_STEPS, |z| visible.mean(z, ShadowedShare(*facets)))
 }
 
 /// The share that meets a second facet if the first one reflects all light.

@@ -161,8 +161,8 @@ fn pane_shares(surface: &Interface, t: f64) -> [[f64; 2]; 2] {
         let r = surface.reflectance * (1.0 + sign * surface.polarization_reflected);
         let crosses = surface.transmittance * (1.0 + sign * surface.polarization_refracted);
         // 1 - R t as a sum of two nonnegative numbers; 0 only where no light enters at all.
-        let left = crosses + r * (1.0 - t);
-        let through = if crosses > 0.0 { crosses * crosses * t / (left * (1.0 + r * t)) } else { 0.0 };
+        let denominator = crosses + r * (1.0 - t);
+        let through = if crosses > 0.0 { crosses * crosses * t / (denominator * (1.0 + r * t)) } else { 0.0 };
         [through, r + r * t * through]
     });
     [[s[0], p[0]], [s[1], p[1]]]

@@ -101,10 +101,10 @@ impl Transform {
     /// and the roundings in computing it: gamma(4) (|N| |M| + 1) and gamma(5) (|N| |t| + |s|).
     pub fn round_trip_error(&self, back: &Self, reach: DVec3) -> DVec3 {
         let both = self.then(back);
-        let left = (both.linear - DMat3::IDENTITY).abs();
+        let deviation = (both.linear - DMat3::IDENTITY).abs();
         let rounded = back.magnitudes() * (self.magnitudes() * reach) + reach;
         let shifted = back.magnitudes() * self.translation.abs() + back.translation.abs();
-        left * reach + both.translation.abs() + rounded * super::gamma(4) + shifted * super::gamma(5)
+        deviation * reach + both.translation.abs() + rounded * super::gamma(4) + shifted * super::gamma(5)
     }
 
     /// Multiplies a vector by the transposed linear part, which maps normals of the image back to the original.

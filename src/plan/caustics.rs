@@ -30,14 +30,14 @@ const RAYS_PER_SIDE: u32 = 24;
 /// Whether photons show caustics to the camera.
 pub(super) struct CausticChoice {
     pub(super) caustics: Option<Box<Caustics>>,
-    pub(super) why: Vec<String>,
+    pub(super) reasons: Vec<String>,
     /// Whether photons are not gathered either, since they do not pay where the camera would see them.
     pub(super) no_map: bool,
 }
 
 impl CausticChoice {
-    fn none(why: Vec<String>, no_map: bool) -> Self {
-        Self { caustics: None, why, no_map }
+    fn none(reasons: Vec<String>, no_map: bool) -> Self {
+        Self { caustics: None, reasons, no_map }
     }
 }
 
@@ -48,12 +48,12 @@ pub(super) struct Caustics {
     /// The openings through which a sky sends them.
     openings: Vec<Opening>,
     /// How smooth the objects are that they are sent to.
-    smooth: Vec<Smoothness>,
+    smoothness: Vec<Smoothness>,
     /// Descriptions of the lights that send them, and of what they are sent to.
     from: String,
     to: String,
     /// The share of the photons that is seen.
-    seen: f64,
+    seen_share: f64,
     /// How many times as long chance takes to the same error, if it finds them.
     gain: Option<Effort>,
 }
@@ -69,14 +69,14 @@ impl Caustics {
             photons: (per_sample * world.samples_of_the_format()).max(MIN_PHOTONS).ceil() as u64,
             lights,
             openings: self.openings.clone(),
-            to: self.smooth.clone(),
+            to: self.smoothness.clone(),
             map: None,
         }
     }
 
     /// Returns the explanation for the user.
     pub(super) fn reason(&self, world: &World) -> Option<String> {
-        let Self { from, to, seen, gain, .. } = self;
+        let Self { from, to, seen_share: seen, gain, .. } = self;
         let (method, photons) = (world.method(), world.method().light_pass.as_ref()?.photons);
         let all = if method.stop.is_none() { format!("{} ", format_count(photons)) } else { String::new() };
         let slowdown = gain.map_or(String::new(), |gain| format!("; without them, {}", describe_effort(gain)));
@@ -96,11 +96,11 @@ pub(super) struct SeenPhotons<'a> {
     pub(super) guided: World,
     offered: OfferedPhotons,
     /// The lights whose photons are seen.
-    seen: Vec<SizedLight>,
+    seen_lights: Vec<SizedLight>,
     /// For each light of the scene, the share of its photons that is seen.
-    share: Vec<f64>,
+    seen_shares: Vec<f64>,
     /// Lights that rays hit by chance.
-    large: Vec<SizedLight>,
+    large_lights: Vec<SizedLight>,
     openings: Vec<Opening>,
     /// Description of what they are sent to.
     to: String,
@@ -134,17 +134,27 @@ impl<'a> SeenPhotons<'a> {
             return Err(CausticChoice::none(unseen.into_iter().collect(), false));
         }
         let offered = OfferedPhotons::new(scene, &guided, size);
-        Ok(Self { scene, guided, offered, seen, share, large, openings, to, unseen })
+        Ok(Self {
+            scene,
+            guided,
+            offered,
+            seen_lights: seen,
+            seen_shares: share,
+            large_lights: large,
+            openings,
+            to,
+            unseen,
+        })
     }
 
     /// Chooses the photons that are worth their time, given the noise of camera samples, and tells why.
     pub(super) fn choose(&self, noise: &PilotNoise) -> CausticChoice {
         let Self { scene, to, .. } = self;
         let PhotonGain { mut photons, gain, to_smooth } = self.offered.weigh(noise);
-        photons.retain(|photons| self.seen.iter().any(|(id, _)| photons.lights.contains(id)));
+        photons.retain(|photons| self.seen_lights.iter().any(|(id, _)| photons.lights.contains(id)));
         let sends_photons = |&(id, _): &SizedLight| photons.iter().any(|photons| photons.lights.contains(&id));
-        let (sending, left): (Vec<_>, Vec<_>) = self.seen.iter().partition(|&light| sends_photons(light));
-        let large: Vec<_> = self.large.iter().copied().chain(left).collect();
+        let (sending, left): (Vec<_>, Vec<_>) = self.seen_lights.iter().partition(|&light| sends_photons(light));
+        let large: Vec<_> = self.large_lights.iter().copied().chain(left).collect();
         let mut lines: Vec<String> = self.unseen.iter().cloned().collect();
         if sending.is_empty() {
             let (from, why) = (named(scene, &large), why_not_worth(gain));
@@ -154,10 +164,10 @@ impl<'a> SeenPhotons<'a> {
         if !large.is_empty() {
             lines.push(format!("left to chance: caustics from {}", named(scene, &large)));
         }
-        let seen = sending.iter().map(|&(id, _)| self.share[id]).fold(0.0, f64::max);
-        let smooth: Vec<_> =
+        let seen_share = sending.iter().map(|&(id, _)| self.seen_shares[id]).fold(0.0, f64::max);
+        let smoothness: Vec<_> =
             Smoothness::ALL.into_iter().filter(|smooth| photons.iter().any(|photons| photons.to == *smooth)).collect();
-        let left = Smoothness::ALL.into_iter().filter(|left| !smooth.contains(left));
+        let left = Smoothness::ALL.into_iter().filter(|left| !smoothness.contains(left));
         lines.extend(left.filter_map(|left| {
             let name = &scene.objects[*targets(scene, &[left]).first()?].name;
             let (how, points) = match left {
@@ -167,9 +177,10 @@ impl<'a> SeenPhotons<'a> {
             };
             Some(format!("left to chance: caustics of {name}, which is {how}{points}"))
         }));
-        let (from, to, openings) = (named(scene, &sending), describe_targets(scene, &smooth), self.openings.clone());
-        let caustics = Box::new(Caustics { photons, openings, smooth, from, to, seen, gain });
-        CausticChoice { caustics: Some(caustics), why: lines, no_map: false }
+        let (from, to, openings) =
+            (named(scene, &sending), describe_targets(scene, &smoothness), self.openings.clone());
+        let caustics = Box::new(Caustics { photons, openings, smoothness, from, to, seen_share, gain });
+        CausticChoice { caustics: Some(caustics), reasons: lines, no_map: false }
     }
 }
 

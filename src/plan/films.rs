@@ -12,14 +12,14 @@ use crate::spectrum::{Basis, Curve, CurveKind, Quantity};
 pub(super) struct Film<'a> {
     coating: &'a Coating<Curve>,
     /// What lies beyond it; nothing behind a pane.
-    beyond: Beyond<'a>,
+    substrate: Substrate<'a>,
     pub(super) crosses: bool,
     /// Whether layers of varying thickness are taken at their thickest, rather than at their mean.
     thickest: bool,
 }
 
 #[derive(Clone, Copy)]
-enum Beyond<'a> {
+enum Substrate<'a> {
     Nothing,
     Glass(&'a Curve),
     Metal(&'a Curve, &'a Curve),
@@ -27,11 +27,11 @@ enum Beyond<'a> {
 
 /// Returns the films of a material itself, without the parts it is made of.
 pub(super) fn films(material: &Material<Curve>) -> Vec<Film<'_>> {
-    let (coating, beyond, lets_through) = match material {
-        Material::Dielectric(glass) => (glass.coating.as_ref(), Beyond::Glass(&glass.index), true),
-        Material::Thin(Thin::Film(film)) => (Some(film), Beyond::Nothing, true),
-        Material::Conductor(metal) => (metal.coating.as_ref(), Beyond::Metal(&metal.n, &metal.k), false),
-        Material::Plastic(plastic) => (plastic.coating.as_ref(), Beyond::Glass(&plastic.index), true),
+    let (coating, substrate, lets_through) = match material {
+        Material::Dielectric(glass) => (glass.coating.as_ref(), Substrate::Glass(&glass.index), true),
+        Material::Thin(Thin::Film(film)) => (Some(film), Substrate::Nothing, true),
+        Material::Conductor(metal) => (metal.coating.as_ref(), Substrate::Metal(&metal.n, &metal.k), false),
+        Material::Plastic(plastic) => (plastic.coating.as_ref(), Substrate::Glass(&plastic.index), true),
         Material::Diffuse(_) | Material::Mirror(_) | Material::Emissive(_) => return Vec::new(),
         Material::Thin(Thin::Pane { .. }) => return Vec::new(),
         Material::Mix(_) | Material::Mask(_) | Material::Polarizer(_) | Material::Retarder(_) => return Vec::new(),
@@ -41,7 +41,7 @@ pub(super) fn films(material: &Material<Curve>) -> Vec<Film<'_>> {
     let mut films = Vec::new();
     for thickest in if varies { &[true, false][..] } else { &[true] } {
         for crosses in if lets_through { &[false, true][..] } else { &[false] } {
-            films.push(Film { coating, beyond, crosses: *crosses, thickest: *thickest });
+            films.push(Film { coating, substrate, crosses: *crosses, thickest: *thickest });
         }
     }
     films
@@ -52,10 +52,10 @@ impl Film<'_> {
     /// returns the values of a curve at all of them.
     pub(super) fn remaining_light(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         let stacks = self.stacks(waves, &read);
-        let (n, k) = match self.beyond {
-            Beyond::Nothing => (vec![1.0; stacks.len()], vec![0.0; stacks.len()]),
-            Beyond::Glass(index) => (read(Quantity::Index, index), vec![0.0; stacks.len()]),
-            Beyond::Metal(n, k) => (read(Quantity::MetalIndex, n), read(Quantity::MetalExtinction, k)),
+        let (n, k) = match self.substrate {
+            Substrate::Nothing => (vec![1.0; stacks.len()], vec![0.0; stacks.len()]),
+            Substrate::Glass(index) => (read(Quantity::Index, index), vec![0.0; stacks.len()]),
+            Substrate::Metal(n, k) => (read(Quantity::MetalIndex, n), read(Quantity::MetalExtinction, k)),
         };
         let share = |(i, stack): (usize, &Stack)| {
             let shares = stack.shares(1.0, Complex::new(n[i], -k[i]), 1.0);

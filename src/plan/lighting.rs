@@ -31,20 +31,20 @@ impl LitWorld {
         };
         let choice = photons.choose(&pilot_noise(&photons.guided));
         let is_chosen = choice.caustics.is_some();
-        let lit = Self::with_caustics(scene, unlit, pilot_world, light, choice);
+        let lit_world = Self::with_caustics(scene, unlit, pilot_world, light, choice);
         if is_chosen {
-            return Self { guided: Some(photons.guided), ..lit };
+            return Self { guided: Some(photons.guided), ..lit_world };
         }
-        let Method { light_vertices: true, light_pass: None, .. } = lit.world.method() else { return lit };
+        let Method { light_vertices: true, light_pass: None, .. } = lit_world.world.method() else { return lit_world };
         // Light vertices remove noise next to which photons did not pay.
-        let combined = lit.world.with_light_pass(photons.guided.method().light_pass.clone());
+        let combined = lit_world.world.with_light_pass(photons.guided.method().light_pass.clone());
         let choice = photons.choose(&pilot_noise(&combined));
         if choice.caustics.is_none() {
-            return lit;
+            return lit_world;
         }
         let combined = Self::with_caustics(scene, unlit, pilot_world, None, choice);
         if !combined.world.method().light_vertices {
-            return lit;
+            return lit_world;
         }
         Self { guided: Some(photons.guided), ..combined }
     }
@@ -55,12 +55,12 @@ impl LitWorld {
         unlit: &World,
         pilot_world: &World,
         light: Option<RoomLight>,
-        CausticChoice { caustics, why, no_map }: CausticChoice,
+        CausticChoice { caustics, reasons: caustic_reasons, no_map }: CausticChoice,
     ) -> Self {
         let shown_pass = caustics.as_ref().map(|caustics| caustics.pass(unlit, 0.0));
         let (light_pass, why_gathered) = photon_map::with_map(scene, pilot_world, shown_pass.as_ref(), no_map);
         // Why nothing is shown matters only where nothing is gathered either.
-        let why = if shown_pass.is_some() || light_pass.is_none() { why } else { Vec::new() };
+        let caustic_reasons = if shown_pass.is_some() || light_pass.is_none() { caustic_reasons } else { Vec::new() };
         let map = light_pass.as_ref().and_then(|pass| pass.map);
         let photons = caustics.as_ref().map_or(&[][..], |caustics| &caustics.photons);
         // Without photons, what was found to light the room still holds.
@@ -74,7 +74,13 @@ impl LitWorld {
         }
         let reason = caustics.as_ref().and_then(|caustics| caustics.reason(&world));
         let left_to_chance = caustics::describe_unbounded(scene, &world);
-        let because = reason.into_iter().chain(left_to_chance).chain(why).chain(why_gathered).chain(reasons).collect();
+        let because = reason
+            .into_iter()
+            .chain(left_to_chance)
+            .chain(caustic_reasons)
+            .chain(why_gathered)
+            .chain(reasons)
+            .collect();
         Self { world, because, guided: None }
     }
 }

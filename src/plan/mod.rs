@@ -83,7 +83,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let LitWorld { world, because, guided } = LitWorld::new(scene, &unlit);
     decisions.extend(because);
     let polarization = polarization::decide(scene, &world);
-    decisions.extend(polarization.why);
+    decisions.extend(polarization.reason);
     let world = world.with_polarization(polarization.polarization);
     let adaptive = adaptive::decide(scene, &world);
     decisions.extend(adaptive.as_ref().map(adaptive::reason));

@@ -70,7 +70,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
         _ if spectral => {
             (bands_covering(&survey, MAX_LANES, 0, shown), "the most lanes available, for the spectra".to_owned())
         }
-        _ => (candidates[chosen].basis.clone(), least(&candidates, chosen, tolerance, is_exact)),
+        _ => (candidates[chosen].basis.clone(), lane_count_reason(&candidates, chosen, tolerance, is_exact)),
     };
     let next =
         if hero { candidates.get(chosen) } else { candidates.get(chosen + 1) }.map(|candidate| candidate.basis.clone());
@@ -124,7 +124,7 @@ fn three_bands(survey: &Survey) -> Basis {
 /// The message where no number of lanes is enough.
 const BEYOND_TOLERANCE: &str = "some color may be off by more than is tolerated";
 
-fn least(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -> String {
+fn lane_count_reason(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -> String {
     match candidates[chosen].bound() {
         _ if plain => {
             "every color is a number or rgb under the film's white, so more lanes would change nothing".into()
@@ -161,12 +161,12 @@ fn error_line(candidates: &[Candidate], basis: &Basis, bound: f64, tolerance: f6
 /// Describes emission lines that share the interpolated lanes.
 fn lines_without_lane(survey: &Survey, basis: &Basis) -> Option<String> {
     let lines = survey.lines(usize::MAX);
-    let own = lines.iter().filter(|nm| basis.wavelengths_nm().contains(nm)).count();
-    (own < lines.len()).then(|| match own {
+    let line_lanes = lines.iter().filter(|nm| basis.wavelengths_nm().contains(nm)).count();
+    (line_lanes < lines.len()).then(|| match line_lanes {
         0 if lines.len() == 1 => "the emission line is interpolated between the lanes".into(),
         0 => format!("{} emission lines are interpolated between the lanes", lines.len()),
         _ => format!(
-            "of {} emission lines the {own} brightest have lanes of their own, the others are interpolated",
+            "of {} emission lines the {line_lanes} brightest have lanes of their own, the others are interpolated",
             lines.len()
         ),
     })

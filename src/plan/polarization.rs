@@ -9,7 +9,7 @@ use crate::trace::{Polarizing, World, most_changed, polarization_error};
 /// What is decided about polarization, and what the user is told.
 pub(super) struct Decision {
     pub(super) polarization: Polarizing,
-    pub(super) why: Option<String>,
+    pub(super) reason: Option<String>,
     pub(super) left_out: Option<String>,
     /// How far the image is off without polarization, if that was measured.
     pub(super) error: Option<f64>,
@@ -21,39 +21,42 @@ const SAFETY: f64 = 2.0;
 /// Traces polarization where the scene asks for it, or where leaving it out would cause an error above the tolerance:
 /// in the whole format, so that all parts of an image are rendered the same way.
 pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decision {
-    let on = |why: String| {
-        let why = Some(format!("polarization on: {why}"));
-        Decision { polarization: Polarizing::Traced, why, left_out: None, error: None }
+    let decide_on = |reason: String| {
+        let reason = Some(format!("polarization on: {reason}"));
+        Decision { polarization: Polarizing::Traced, reason, left_out: None, error: None }
     };
-    let off = |why: Option<String>, left_out: Option<String>| {
-        let why = why.map(|why| format!("polarization off: {why}"));
-        Decision { polarization: Polarizing::Averaged, why, left_out, error: None }
+    let decide_off = |reason: Option<String>, left_out: Option<String>| {
+        let reason = reason.map(|reason| format!("polarization off: {reason}"));
+        Decision { polarization: Polarizing::Averaged, reason, left_out, error: None }
     };
     let world = &world.of_the_format();
     match scene.render.polarization {
-        PolarizationText::On => return on("the scene asks for it".into()),
+        PolarizationText::On => return decide_on("the scene asks for it".into()),
         PolarizationText::Off => {
-            return off(Some("the scene asks for it".into()), left_out(most_changed(world)));
+            return decide_off(Some("the scene asks for it".into()), left_out(most_changed(world)));
         }
         PolarizationText::Auto => {}
     }
     if let Some(why_required) = why_required(scene) {
-        return on(why_required);
+        return decide_on(why_required);
     }
     let bound = most_changed(world);
     let tolerated = tolerance(scene);
     if bound <= tolerated {
         let within = |what: String| format!("{what}, within the {} that is tolerated", percent(tolerated));
-        return off(None, left_out(bound).map(within));
+        return decide_off(None, left_out(bound).map(within));
     }
     let error = polarization_error(world);
     let traced_above = tolerated / SAFETY;
     let [found, limit] = percent_and_limit(error, traced_above);
     let measured = format!("{found} (it is traced above {limit})");
     if error > traced_above {
-        on(format!("without it, the image would be wrong by {measured}"))
+        decide_on(format!("without it, the image would be wrong by {measured}"))
     } else {
-        Decision { error: Some(error), ..off(Some(format!("without it, the image is wrong by {measured}")), None) }
+        Decision {
+            error: Some(error),
+            ..decide_off(Some(format!("without it, the image is wrong by {measured}")), None)
+        }
     }
 }
 

@@ -79,11 +79,11 @@ impl<'a> Seen<'a> {
     /// Returns what is left of light after each product, from what each tint leaves.
     fn multiply(&self, tints: &[Vec<f64>], length: usize) -> Vec<Vec<f64>> {
         let product = |numbers: &Vec<u32>| {
-            let mut left = vec![1.0; length];
+            let mut remaining = vec![1.0; length];
             for &number in numbers {
-                left.iter_mut().zip(&tints[number as usize]).for_each(|(left, tint)| *left *= tint);
+                remaining.iter_mut().zip(&tints[number as usize]).for_each(|(left, tint)| *left *= tint);
             }
-            left
+            remaining
         };
         self.products.iter().map(product).collect()
     }

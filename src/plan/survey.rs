@@ -332,8 +332,8 @@ impl Tint<'_> {
             Self::Coated(plastic, reflectance) => {
                 let index = read(Quantity::Index, &plastic.index);
                 let coated = |(r, n): (f64, f64)| {
-                    let kept = 1.0 - diffuse_transmittance(n) / (n * n);
-                    r * (1.0 - kept) / (1.0 - r * kept)
+                    let internal_reflectance = 1.0 - diffuse_transmittance(n) / (n * n);
+                    r * (1.0 - internal_reflectance) / (1.0 - r * internal_reflectance)
                 };
                 read(Quantity::Reflectance, reflectance).into_iter().zip(index).map(coated).collect()
             }

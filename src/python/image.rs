@@ -58,7 +58,7 @@ impl Image {
         let place = standard_layer(film, name)
             .or_else(|| requested_layer(film, name))
             .ok_or_else(|| self.unknown_layer(name))?;
-        Ok(Plane::of(self.image.clone(), place))
+        Ok(Plane::new(self.image.clone(), place))
     }
 
     /// Returns the centers of the spectral bands in nm, and the radiance of all pixels in each band.
@@ -72,7 +72,7 @@ impl Image {
             place.shape.push(1);
             place.strides.push(size_of::<f32>());
         }
-        Some((spectral.bands.centers_nm().collect(), Plane::of(self.image.clone(), place)))
+        Some((spectral.bands.centers_nm().collect(), Plane::new(self.image.clone(), place)))
     }
 
     /// Returns S1, S2 and S3 of all pixels in each spectral band.
@@ -85,7 +85,7 @@ impl Image {
         place.strides.truncate(2);
         place.shape.extend([spectral.components() - 1, bands]);
         place.strides.extend([bands * size, size]);
-        Some(Plane::of(self.image.clone(), place))
+        Some(Plane::new(self.image.clone(), place))
     }
 
     /// Writes the linear image. Returns the number of values that were too large for 16 bits.

@@ -48,7 +48,7 @@ pub(super) struct Place {
 
 impl Plane {
     /// Creates a plane of numbers in memory that `owner` keeps unchanged.
-    pub(super) fn of(owner: Arc<dyn Any + Send + Sync>, place: Place) -> Self {
+    pub(super) fn new(owner: Arc<dyn Any + Send + Sync>, place: Place) -> Self {
         let Place { address, shape, strides } = place;
         Self { _owner: owner, address, shape, strides, kind: f32::KIND }
     }

@@ -38,7 +38,7 @@ pub(super) struct Written {
 
 impl Written {
     /// Describes a file as it is now, written in a given way. Returns none if it does not exist.
-    pub(super) fn of(path: &Path, way: &str) -> Option<Self> {
+    pub(super) fn from_file(path: &Path, way: &str) -> Option<Self> {
         let (name, found) = (path.file_name()?.to_string_lossy().into_owned(), fs::metadata(path).ok()?);
         Some(Self { name, length: found.len(), modified: found.modified().ok()?, way: way.to_owned() })
     }
@@ -67,7 +67,7 @@ pub fn has_finished(path: &Path, scene: &Scene, shard: Shard, files: &[&Path], w
             return Ok(false);
         }
         let Finished { asked, written } = blocks.block()?;
-        let is_unchanged = |file: &&Path| Written::of(file, way).is_some_and(|file| written.contains(&file));
+        let is_unchanged = |file: &&Path| Written::from_file(file, way).is_some_and(|file| written.contains(&file));
         Ok(asked == digest(&format!("{:?}", scene.render)) && files.iter().all(is_unchanged))
     };
     // Any error is reported when the render tries to continue from the checkpoint.

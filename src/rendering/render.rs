@@ -240,14 +240,14 @@ impl Rendering {
     /// # Errors
     /// The errors of [`save`](Self::save).
     pub fn save_finished(&self, path: impl AsRef<Path>, files: &[&Path], way: &str) -> Result<()> {
-        let written: Vec<Written> = files.iter().filter_map(|file| Written::of(file, way)).collect();
+        let written: Vec<Written> = files.iter().filter_map(|file| Written::from_file(file, way)).collect();
         checkpoint::save(path.as_ref(), &self.identity, &Finished::new(&self.render, written), &self.passes)
     }
 
     /// Returns whether the finished render that this one was resumed from has written a file in the same way, and
     /// nobody has changed it since.
     pub fn has_written(&self, file: impl AsRef<Path>, way: &str) -> bool {
-        Written::of(file.as_ref(), way).is_some_and(|file| self.written.contains(&file))
+        Written::from_file(file.as_ref(), way).is_some_and(|file| self.written.contains(&file))
     }
 
     /// Continues from a checkpoint of the same scene, seed, image, layers and plan. More samples may be requested.

@@ -41,9 +41,9 @@ fn count_unbalanced(vertices: usize, triangles: &[[u32; 3]], corner: impl Fn(u32
     let count_at = |a: u32| {
         let bad = ends_from(a).chunk_by(|b, c| b == c).filter(|same| {
             let ends = ends_from(same[0]);
-            let back = ends.partition_point(|&end| end <= a) - ends.partition_point(|&end| end < a);
+            let backward_count = ends.partition_point(|&end| end <= a) - ends.partition_point(|&end| end < a);
             // An edge that runs both ways is seen from both ends. It is counted at the lower one.
-            back != same.len() && (back == 0 || a < same[0])
+            backward_count != same.len() && (backward_count == 0 || a < same[0])
         });
         bad.count()
     };

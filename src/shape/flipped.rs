@@ -50,10 +50,10 @@ fn count_flipped(neighbors: &[Vec<Neighbor>]) -> Option<usize> {
         is_flipped[first] = Some(false);
         let (mut open, mut count, mut turned) = (vec![first], 0, 0);
         while let Some(triangle) = open.pop() {
-            let own = is_flipped[triangle] == Some(true);
-            (count, turned) = (count + 1, turned + usize::from(own));
+            let is_this_flipped = is_flipped[triangle] == Some(true);
+            (count, turned) = (count + 1, turned + usize::from(is_this_flipped));
             for neighbor in &neighbors[triangle] {
-                let (other, should_flip) = (neighbor.triangle as usize, own != neighbor.is_opposed);
+                let (other, should_flip) = (neighbor.triangle as usize, is_this_flipped != neighbor.is_opposed);
                 match is_flipped[other] {
                     None => {
                         is_flipped[other] = Some(should_flip);

@@ -30,8 +30,8 @@ impl Instance {
     /// 32-bit numbers.
     pub fn new(mesh: Arc<Mesh>, to_world: Transform) -> Option<Self> {
         let to_object = to_world.inverse().filter(|back| back.size() <= MAX_INVERSE)?;
-        let own = mesh.bounds();
-        let reach = own.min.abs().max(own.max.abs());
+        let mesh_bounds = mesh.bounds();
+        let reach = mesh_bounds.min.abs().max(mesh_bounds.max.abs());
         let round_trip_error = to_world.round_trip_error(&to_object, reach);
         let around = Bounds::around(mesh.vertices().map(|vertex| to_world.point(vertex)));
         let mut placed = Self { mesh, to_world, to_object, round_trip_error, bounds: around };
@@ -134,8 +134,8 @@ impl Instance {
     }
 
     pub(super) fn tangents(&self, part: u32) -> Option<[DVec3; 2]> {
-        let own = self.mesh.tangents(part)?;
-        Some(own.map(|tangent| self.to_world.vector(tangent)))
+        let mesh_tangents = self.mesh.tangents(part)?;
+        Some(mesh_tangents.map(|tangent| self.to_world.vector(tangent)))
     }
 
     pub(super) fn area(&self) -> f64 {
@@ -151,7 +151,7 @@ impl Instance {
 
     /// Returns the density per unit area in the world with which `sample_area` draws points of a triangle.
     pub(super) fn density(&self, part: u32) -> f64 {
-        let own = self.mesh.triangle(part).area() / self.mesh.area();
-        own / self.triangle(part).area()
+        let area_share = self.mesh.triangle(part).area() / self.mesh.area();
+        area_share / self.triangle(part).area()
     }
 }

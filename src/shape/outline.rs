@@ -31,12 +31,12 @@ struct SphericalTriangle {
 const MIN_SOLID_ANGLE: f64 = 1.0 / (1u64 << 28) as f64;
 
 /// Distance, in half diagonals, beyond which sampling by area does as well: benches/README.md.
-const NEAR: f64 = 4.0;
+const MAX_RELATIVE_DISTANCE: f64 = 4.0;
 
 /// Returns whether solid angles are worth their cost for a shape at the end of the vector `offset`. `radius2` is the
 /// square of the shape's half diagonal.
 pub(super) fn is_near(offset: DVec3, radius2: f64) -> bool {
-    offset.length_squared() < NEAR * NEAR * radius2
+    offset.length_squared() < MAX_RELATIVE_DISTANCE * MAX_RELATIVE_DISTANCE * radius2
 }
 
 impl Outline {

@@ -20,7 +20,7 @@ pub(super) struct Body {
 }
 
 /// Number of elements that are read at once. Each takes several times the memory of what is kept of it.
-const BATCH: usize = 4096;
+const BATCH_SIZE: usize = 4096;
 
 impl Body {
     /// Reads the header. Its comments may be in any encoding.
@@ -59,8 +59,8 @@ impl Body {
             return self.read_text_elements(element, keep);
         }
         let (parser, mut batch) = (Parser::<E>::new(), element.clone());
-        for done in (0..element.count).step_by(BATCH) {
-            batch.count = BATCH.min(element.count - done);
+        for done in (0..element.count).step_by(BATCH_SIZE) {
+            batch.count = BATCH_SIZE.min(element.count - done);
             let read = parser.read_payload_for_element(&mut self.rest, &batch, &self.header);
             let with_totals = |error| with_total_counts(&ply_error(error, false), batch.count, done, element.count);
             read.map_err(with_totals)?.into_iter().for_each(&mut keep);

@@ -59,7 +59,7 @@ impl BandResponse {
             Some(line) => self.lines_nm[line],
             None => START_NM + hero.below as f64 + hero.fraction,
         };
-        let band = self.bands.of(nm)?;
+        let band = self.bands.band_at(nm)?;
         let (a, b) = (self.fine[hero.below], self.fine[hero.below + 1]);
         Some((band, weight * (a + hero.fraction * (b - a)) / self.bands.known_nm(band)))
     }

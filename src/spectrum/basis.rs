@@ -435,7 +435,7 @@ impl Basis {
             }
             Some(line) => {
                 let [nm, power] = lines[line];
-                bands.of(nm).into_iter().for_each(|band| add(lane, band, weight * power));
+                bands.band_at(nm).into_iter().for_each(|band| add(lane, band, weight * power));
             }
         });
         let at = |nm: f64| unit * emission.spectrum()[(nm - visible::START_NM) as usize];

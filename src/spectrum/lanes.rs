@@ -13,10 +13,10 @@ impl LaneSet {
     /// Returns the lanes in their order.
     #[inline(always)]
     pub fn iter(self) -> impl Iterator<Item = usize> {
-        let mut left = self.0;
+        let mut remaining = self.0;
         std::iter::from_fn(move || {
-            let next = left.trailing_zeros() as usize;
-            left &= left.wrapping_sub(1);
+            let next = remaining.trailing_zeros() as usize;
+            remaining &= remaining.wrapping_sub(1);
             (next < 32).then_some(next)
         })
     }

@@ -56,7 +56,7 @@ impl Mixture {
     /// drawn.
     pub(super) fn spread_over_bands(&self, bands: &WavelengthBands, lights: &[Emission]) -> Self {
         let is_lit = |step: usize| lights.iter().any(|light| light.spectrum()[step..step + 2].iter().any(|&x| x > 0.0));
-        let is_shown = |step: usize| bands.of(visible::START_NM + step as f64 + 0.5).is_some();
+        let is_shown = |step: usize| bands.band_at(visible::START_NM + step as f64 + 0.5).is_some();
         let shown: Vec<usize> = (0..COUNT - 1).filter(|&step| is_shown(step) && is_lit(step)).collect();
         let mut weights: Vec<f64> = self.probabilities().collect();
         shown.iter().for_each(|&step| weights[step] += 0.5 / shown.len() as f64);

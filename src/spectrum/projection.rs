@@ -17,7 +17,7 @@ pub(super) struct Projection {
     /// Wavelengths in nm at which a spectrum is read in addition to those of the visible grid: ideal lines.
     lines_nm: Vec<f64>,
     /// Weight of each wavelength for each lane, by lane and wavelength.
-    lane_weights: Vec<Vec<f64>>,
+    taken: Vec<Vec<f64>>,
     /// Weight of each lane's function for each lane: the matrix of the normal equations.
     gram: Vec<Vec<f64>>,
 }
@@ -60,10 +60,13 @@ impl Projection {
         let of_line = UNSEEN_WEIGHT / (ends[1] - ends[0] + 1.0);
         let mut taken = vec![vec![0.0; parts.len()]; lanes];
         for (number, part) in parts.iter().enumerate() {
-            let seen = measure_share * part.worth.iter().map(|x| x.abs()).sum::<f64>();
+            let seen_worth = measure_share * part.worth.iter().map(|x| x.abs()).sum::<f64>();
             let smooth = || unseen(part.at_nm) + shown.as_ref().map_or(0.0, |shown| shown(part.at_nm));
             let background = if number < COUNT { smooth() } else { of_line };
-            taken.iter_mut().zip(&part.shares).for_each(|(lane, share)| lane[number] = (seen + background) * share);
+            taken
+                .iter_mut()
+                .zip(&part.shares)
+                .for_each(|(lane, share)| lane[number] = (seen_worth + background) * share);
         }
         for measure in 0..measures {
             for (lane, taken) in taken.iter_mut().enumerate() {
@@ -76,7 +79,7 @@ impl Projection {
         let gram =
             taken.iter().map(|taken| (0..lanes).map(|j| taken.iter().zip(parts).map(of_lane(j)).sum()).collect());
         let gram = gram.collect();
-        Self { lines_nm: parts[COUNT..].iter().map(|part| part.at_nm).collect(), lane_weights: taken, gram }
+        Self { lines_nm: parts[COUNT..].iter().map(|part| part.at_nm).collect(), taken, gram }
     }
 
     /// Returns the number of each lane, for a spectrum that can be read at any wavelength in nm.
@@ -86,7 +89,7 @@ impl Projection {
             return vec![values[0]; self.gram.len()];
         }
         let range = [values.iter().copied().fold(0.0, f64::min), values.iter().copied().fold(1.0, f64::max)];
-        let taken = self.lane_weights.iter().map(|taken| taken.iter().zip(&values).map(|(a, b)| a * b).sum());
+        let taken = self.taken.iter().map(|taken| taken.iter().zip(&values).map(|(a, b)| a * b).sum());
         self.solve_within(range, taken.collect())
     }
 

@@ -64,7 +64,7 @@ impl WavelengthBands {
     }
 
     /// Returns the band of a wavelength; between two bands, the upper one.
-    pub(super) fn of(&self, wavelength_nm: f64) -> Option<usize> {
+    pub(super) fn band_at(&self, wavelength_nm: f64) -> Option<usize> {
         let band = ((wavelength_nm - self.first_nm) / self.step_nm + 0.5).floor();
         (0.0..self.count as f64).contains(&band).then_some(band as usize)
     }
@@ -98,7 +98,7 @@ mod tests {
             }
             assert!(widths.iter().all(|width| (width / step - 1.0).abs() < 1e-12), "{from} to {to} by {step}");
             let centers: Vec<f64> = bands.centers_nm().collect();
-            assert!(centers.iter().enumerate().all(|(band, &nm)| bands.of(nm) == Some(band)));
+            assert!(centers.iter().enumerate().all(|(band, &nm)| bands.band_at(nm) == Some(band)));
             assert!(centers[centers.len() - 1] <= to + 1e-9 && centers[centers.len() - 1] + step > to);
         }
     }

@@ -176,12 +176,12 @@ impl Aiming<'_> {
         Some((sample.direction, place_density))
     }
 
-    /// Returns the density of a direction that the material samples with density `own`.
+    /// Returns the density of a direction that the material samples with the density `material_pdf`.
     pub(super) fn pdf(&self, direction: DVec3, material_pdf: f64) -> f64 {
         self.pdf_given(direction, material_pdf, None)
     }
 
-    /// Returns the density of a direction, given the material's density `own` and that of one place, if it is known.
+    /// Returns the density of a direction, given the material's density and that of one place, if it is known.
     pub(super) fn pdf_given(&self, direction: DVec3, material_pdf: f64, known: Option<(usize, f64)>) -> f64 {
         let ray = Ray { origin: self.from, direction };
         let mut sum = 0.0;

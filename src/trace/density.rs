@@ -53,7 +53,7 @@ impl Rate {
     }
 
     /// Returns the samples that the pixel takes, given those that an average pixel takes.
-    pub fn own_numbers(self, all: &Range<u32>) -> Range<u32> {
+    pub fn sample_numbers(self, all: &Range<u32>) -> Range<u32> {
         let scale =
             |number: u32| if self.0 < 0 { number.div_ceil(1 << -self.0) } else { number.saturating_mul(1 << self.0) };
         scale(all.start)..scale(all.end)
@@ -74,7 +74,7 @@ mod tests {
         for rate in (SampleDensity::LEAST..=SampleDensity::MOST).map(Rate) {
             let (mut next, mut taken) = (0, 0);
             for all in [0..1, 1..2, 2..5, 5..16, 16..17, 17..64] {
-                let own = rate.own_numbers(&all);
+                let own = rate.sample_numbers(&all);
                 assert_eq!(own.start, next, "{rate:?}");
                 own.clone()
                     .for_each(|number| assert!(all.contains(&rate.average_number(number)), "{rate:?}, {number}"));

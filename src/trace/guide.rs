@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::math::Distribution2d;
 
 /// Number of cells along each side of the square.
-const SIDE: usize = 64;
+const CELLS_PER_SIDE: usize = 64;
 /// Share of the photons that is sent everywhere, whatever was learned. It bounds the brightness of what was missed.
 const UNIFORM_SHARE: f64 = 0.2;
 
@@ -20,12 +20,13 @@ pub(super) struct Guide {
 impl Guide {
     /// Returns a density of 1 everywhere.
     pub(super) fn uniform() -> Self {
-        Self::of(|_| 1.0)
+        Self::from_probabilities(|_| 1.0)
     }
 
     /// Learns a density from some photons: their places, and whether they were seen.
     pub(super) fn from_photons(photons: &[([f64; 2], bool)]) -> Self {
-        let (mut sent, mut seen) = (vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE]);
+        let (mut sent, mut seen) =
+            (vec![0.0; CELLS_PER_SIDE * CELLS_PER_SIDE], vec![0.0; CELLS_PER_SIDE * CELLS_PER_SIDE]);
         for &(place, was_seen) in photons {
             let cell = cell_of(place);
             sent[cell] += 1.0;
@@ -34,19 +35,24 @@ impl Guide {
         let share: Vec<f64> = sent.iter().zip(&seen).map(|(sent, seen)| seen / f64::max(*sent, 1.0)).collect();
         // A region that begins in one cell may reach into the next.
         let max_nearby = |cell: usize| {
-            let (row, column) = (cell / SIDE, cell % SIDE);
-            let near = |x: usize| x.saturating_sub(1)..=(x + 1).min(SIDE - 1);
-            near(row).flat_map(|i| near(column).map(move |j| i * SIDE + j)).map(|i| share[i]).fold(0.0, f64::max)
+            let (row, column) = (cell / CELLS_PER_SIDE, cell % CELLS_PER_SIDE);
+            let near = |x: usize| x.saturating_sub(1)..=(x + 1).min(CELLS_PER_SIDE - 1);
+            near(row)
+                .flat_map(|i| near(column).map(move |j| i * CELLS_PER_SIDE + j))
+                .map(|i| share[i])
+                .fold(0.0, f64::max)
         };
-        Self::from_cells(&(0..SIDE * SIDE).map(|cell| share[cell] + 0.25 * max_nearby(cell)).collect::<Vec<_>>())
+        Self::from_cells(
+            &(0..CELLS_PER_SIDE * CELLS_PER_SIDE).map(|cell| share[cell] + 0.25 * max_nearby(cell)).collect::<Vec<_>>(),
+        )
     }
 
     /// Returns a density that follows weights of cells, given by number. Weights of single cells count as much as those
     /// of blocks of 2 x 2, 4 x 4 and 8 x 8 cells, because few of many places are known.
     pub(super) fn from_weights(weights: &[(u32, f32)]) -> Self {
-        let mut cell_weights = vec![0.0; SIDE * SIDE];
+        let mut cell_weights = vec![0.0; CELLS_PER_SIDE * CELLS_PER_SIDE];
         for level in 0..=3 {
-            let block = |cell: usize| [cell / SIDE, cell % SIDE].map(|at| at >> level);
+            let block = |cell: usize| [cell / CELLS_PER_SIDE, cell % CELLS_PER_SIDE].map(|at| at >> level);
             let mut blocks = HashMap::new();
             for &(cell, weight) in weights {
                 *blocks.entry(block(cell as usize)).or_insert(0.0) += f64::from(weight.max(0.0));
@@ -64,20 +70,27 @@ impl Guide {
         if total == 0.0 {
             return Self::disk();
         }
-        let everywhere = (0..SIDE * SIDE).filter(|&cell| touches_disk(cell)).count() as f64 / UNIFORM_SHARE;
-        Self::of(|cell| {
+        let everywhere =
+            (0..CELLS_PER_SIDE * CELLS_PER_SIDE).filter(|&cell| touches_disk(cell)).count() as f64 / UNIFORM_SHARE;
+        Self::from_probabilities(|cell| {
             f64::from(u8::from(touches_disk(cell))) / everywhere + (1.0 - UNIFORM_SHARE) * cell_weights[cell] / total
         })
     }
 
     /// Returns a constant density in all cells that the largest disk in the square reaches into, and 0 in the others.
     pub(super) fn disk() -> Self {
-        Self::of(|cell| f64::from(u8::from(touches_disk(cell))))
+        Self::from_probabilities(|cell| f64::from(u8::from(touches_disk(cell))))
     }
 
     /// Returns a density from the probabilities of cells, up to a factor.
-    fn of(probability: impl Fn(usize) -> f64) -> Self {
-        Self { cells: Distribution2d::new([SIDE; 2], |[column, row]| probability(row * SIDE + column), |_| 1.0) }
+    fn from_probabilities(probability: impl Fn(usize) -> f64) -> Self {
+        Self {
+            cells: Distribution2d::new(
+                [CELLS_PER_SIDE; 2],
+                |[column, row]| probability(row * CELLS_PER_SIDE + column),
+                |_| 1.0,
+            ),
+        }
     }
 
     /// Samples a place in the square from two random numbers.
@@ -87,8 +100,9 @@ impl Guide {
 
     /// Returns roughly the part of the square in which most places are sampled: for n equally likely cells, n cells.
     pub(super) fn extent(&self) -> f64 {
-        let probability = |cell: usize| self.cells.probability([cell % SIDE, cell / SIDE]);
-        1.0 / ((SIDE * SIDE) as f64 * (0..SIDE * SIDE).map(|cell| probability(cell) * probability(cell)).sum::<f64>())
+        let probability = |cell: usize| self.cells.probability([cell % CELLS_PER_SIDE, cell / CELLS_PER_SIDE]);
+        1.0 / ((CELLS_PER_SIDE * CELLS_PER_SIDE) as f64
+            * (0..CELLS_PER_SIDE * CELLS_PER_SIDE).map(|cell| probability(cell) * probability(cell)).sum::<f64>())
     }
 
     pub(super) fn density(&self, place: [f64; 2]) -> f64 {
@@ -99,16 +113,17 @@ impl Guide {
 /// Returns whether the largest disk in the square reaches into a cell.
 fn touches_disk(cell: usize) -> bool {
     let nearest = |at: usize| {
-        let (low, high) = (2.0 * at as f64 / SIDE as f64 - 1.0, 2.0 * (at + 1) as f64 / SIDE as f64 - 1.0);
+        let (low, high) =
+            (2.0 * at as f64 / CELLS_PER_SIDE as f64 - 1.0, 2.0 * (at + 1) as f64 / CELLS_PER_SIDE as f64 - 1.0);
         f64::clamp(0.0, low, high)
     };
-    let [x, y] = [cell % SIDE, cell / SIDE].map(nearest);
+    let [x, y] = [cell % CELLS_PER_SIDE, cell / CELLS_PER_SIDE].map(nearest);
     x * x + y * y < 1.0
 }
 
 pub(super) fn cell_of(place: [f64; 2]) -> usize {
-    let [column, row] = place.map(|x| ((x * SIDE as f64) as usize).min(SIDE - 1));
-    row * SIDE + column
+    let [column, row] = place.map(|x| ((x * CELLS_PER_SIDE as f64) as usize).min(CELLS_PER_SIDE - 1));
+    row * CELLS_PER_SIDE + column
 }
 
 #[cfg(test)]
@@ -126,7 +141,8 @@ mod tests {
         let learned = Guide::from_photons(&grid(256).map(|place| (place, seen(place))).collect::<Vec<_>>());
         let weighted = Guide::from_weights(&[(2000, 1.0), (2001, 3.0), (700, 0.5)]);
         for guide in [Guide::uniform(), Guide::disk(), learned.clone(), weighted] {
-            let total: f64 = grid(SIDE as u32).map(|place| guide.density(place)).sum::<f64>() / (SIDE * SIDE) as f64;
+            let total: f64 = grid(CELLS_PER_SIDE as u32).map(|place| guide.density(place)).sum::<f64>()
+                / (CELLS_PER_SIDE * CELLS_PER_SIDE) as f64;
             assert!((total - 1.0).abs() < 1e-12, "the density sums to {total}");
             // Integrates over the disk by sampling places: pi / 4 for its area, a sixteenth of it for (x - 1 / 2)^2.
             let inside = |p: [f64; 2]| (p[0] - 0.5) * (p[0] - 0.5) + (p[1] - 0.5) * (p[1] - 0.5) < 0.25;

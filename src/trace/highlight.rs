@@ -63,8 +63,8 @@ impl Highlight {
     /// Returns the first and the last column and row of the pixels whose samples may fall into the ellipse.
     fn pixels(&self, filter: Filter) -> [[i32; 2]; 2] {
         // Along an axis, an ellipse reaches as far as the hypotenuse of both radii there.
-        let along = |axis: usize| self.radii[0][axis].hypot(self.radii[1][axis]) + filter.reach() - 0.5;
-        let side = |axis: usize, sign: f64| (self.center[axis] + sign * along(axis)).floor() as i32;
+        let half_extent = |axis: usize| self.radii[0][axis].hypot(self.radii[1][axis]) + filter.reach() - 0.5;
+        let side = |axis: usize, sign: f64| (self.center[axis] + sign * half_extent(axis)).floor() as i32;
         [-1.0, 1.0].map(|sign| [0, 1].map(|axis| side(axis, sign)))
     }
 }
@@ -76,11 +76,9 @@ struct Density {
 }
 
 /// Cells of the unit square from the center to the rim of a highlight, and around it.
-const CELLS: [usize; 2] = [12, 16];
+const CELL_COUNTS: [usize; 2] = [12, 16];
 /// Points along each side of a cell that tell how much of it a pixel sees.
-const POINTS: usize = 2;
-/// Share of a highlight that a pixel must see for samples to be aimed there.
-const SEEN: f64 = 1e-3;
+const POINTS_PER_SIDE: usize = 2;
 
 /// What a pixel sees of a highlight: samples are drawn only there.
 #[derive(Clone, Debug)]
@@ -90,18 +88,18 @@ pub(super) struct SeenHighlight {
 }
 
 impl SeenHighlight {
-    /// Returns `None` where the pixel sees nearly nothing of the highlight.
+    /// Returns `None` where the pixel sees nothing of the highlight.
     fn new(highlight: &Highlight, filter: Filter, pixel: [i32; 2]) -> Option<Self> {
         let at = |cell: [usize; 2], point: usize| -> [f64; 2] {
-            let within = [point % POINTS, point / POINTS].map(|i| (i as f64 + 0.5) / POINTS as f64);
-            [0, 1].map(|i| (cell[i] as f64 + within[i]) / CELLS[i] as f64)
+            let within =
+                [point % POINTS_PER_SIDE, point / POINTS_PER_SIDE].map(|i| (i as f64 + 0.5) / POINTS_PER_SIDE as f64);
+            [0, 1].map(|i| (cell[i] as f64 + within[i]) / CELL_COUNTS[i] as f64)
         };
         let value = |cell, point| filter.value(offset(highlight.point(at(cell, point)), pixel)).abs();
-        let points = POINTS * POINTS;
-        let weight = |cell: [usize; 2]| (0..points).map(|point| value(cell, point)).sum::<f64>();
-        let cells = Distribution2d::new(CELLS, weight, |_| 1.0);
-        (cells.total() > SEEN * (points * CELLS[0] * CELLS[1]) as f64)
-            .then(|| Self { highlight: highlight.clone(), cells })
+        let points = 0..POINTS_PER_SIDE * POINTS_PER_SIDE;
+        let weight = |cell: [usize; 2]| points.clone().map(|point| value(cell, point)).sum::<f64>();
+        let cells = Distribution2d::new(CELL_COUNTS, weight, |_| 1.0);
+        (cells.total() > 0.0).then(|| Self { highlight: highlight.clone(), cells })
     }
 
     /// The light that is mirrored.

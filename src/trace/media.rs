@@ -197,8 +197,8 @@ fn medium_changes(
     counts: ObjectFilter,
 ) -> impl Iterator<Item = MediumChange> {
     let surfaces = std::iter::from_fn(move || {
-        let left = to.map_or(f64::INFINITY, |to| (to - ray.origin).dot(ray.direction));
-        let hit = scene.nearest(&ray, f64::INFINITY, counts).filter(|hit| hit.intersection.t <= left)?;
+        let remaining_distance = to.map_or(f64::INFINITY, |to| (to - ray.origin).dot(ray.direction));
+        let hit = scene.nearest(&ray, f64::INFINITY, counts).filter(|hit| hit.intersection.t <= remaining_distance)?;
         let object = &scene.objects[hit.object as usize];
         let point = object.shape.point(&ray, &hit.intersection);
         let enters = point.normal.dot(ray.direction) < 0.0;
@@ -231,9 +231,9 @@ fn half_spaces_around(
         }
     }
     let count = |planes: &[&Plane]| {
-        let around = |way: DVec3| planes.iter().filter(|plane| plane.normal().dot(perturbed(way)) < 0.0).count();
+        let count_around = |way: DVec3| planes.iter().filter(|plane| plane.normal().dot(perturbed(way)) < 0.0).count();
         let mean_normal = planes.iter().map(|plane| plane.normal()).sum::<DVec3>().try_normalize();
-        let least = [Some(direction), Some(-direction), mean_normal].into_iter().flatten().map(around).min();
+        let least = [Some(direction), Some(-direction), mean_normal].into_iter().flatten().map(count_around).min();
         planes.iter().filter(|plane| plane.is_behind(start)).count().saturating_sub(least.unwrap_or(0)) as u32
     };
     planes.into_iter().map(|(material, planes)| (material, count(&planes))).filter(|(_, count)| *count > 0).collect()
@@ -321,10 +321,12 @@ fn media_of(scene: &Scene<Table>, light: LightId) -> Option<Media> {
         Light::Point(point) => Some(Media::around(scene, point.position.into(), DVec3::Y)),
         Light::Spot(spot) => Some(Media::around(scene, spot.position.into(), DVec3::Y)),
         Light::Area(area) => {
-            let own = area.shape.bounds()?;
+            let light_bounds = area.shape.bounds()?;
             let clear = (0..scene.objects.len()).filter(|&i| scene.material_of(i as u32).medium().is_some());
             let is_outside = clear.map(|i| scene.objects[i].shape.bounds()).all(|other| {
-                other.is_some_and(|other| own.max.cmplt(other.min).any() || own.min.cmpgt(other.max).any())
+                other.is_some_and(|other| {
+                    light_bounds.max.cmplt(other.min).any() || light_bounds.min.cmpgt(other.max).any()
+                })
             });
             is_outside.then(Media::default)
         }

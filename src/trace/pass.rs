@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::World;
 use super::photon_targets::PhotonTargets;
-use super::replicates::{HALF, REPLICATES};
+use super::replicates::{HALF_REPLICATES, REPLICATES};
 use crate::math::derive_seed;
 
 /// The samples that a pass takes of each pixel, and their random numbers.
@@ -60,7 +60,7 @@ impl Pass {
 
     /// Returns whether it belongs to the first half of all replicates; `None` without replicates.
     pub(super) fn is_in_first_half(&self) -> Option<bool> {
-        self.replicate.map(|replicate| replicate < HALF)
+        self.replicate.map(|replicate| replicate < HALF_REPLICATES)
     }
 }
 
@@ -85,7 +85,7 @@ impl Stage {
     }
 
     /// Returns the stage after more samples of the replicate whose turn it is.
-    pub(super) fn after(mut self, samples: u32) -> Self {
+    pub(super) fn after_samples(mut self, samples: u32) -> Self {
         self.taken += samples;
         if self.taken == self.size {
             (self.replicate, self.taken) = (self.replicate + 1, 0);
@@ -110,7 +110,9 @@ impl Stage {
     pub(super) fn is_possible_after(self, samples: u32) -> bool {
         let Self { before, size, replicate, taken } = self;
         let each = |count: u32| u64::from(REPLICATES as u32) * u64::from(count);
-        let own = u64::from(replicate) * u64::from(size) + u64::from(taken);
-        each(before) + own == u64::from(samples) && replicate < REPLICATES as u32 && (taken < size || size + taken == 0)
+        let taken_in_stage = u64::from(replicate) * u64::from(size) + u64::from(taken);
+        each(before) + taken_in_stage == u64::from(samples)
+            && replicate < REPLICATES as u32
+            && (taken < size || size + taken == 0)
     }
 }

@@ -53,7 +53,7 @@ pub(super) enum PathStart {
 
 impl PathStart {
     /// Returns the start of one light's paths, given the sunlit places of some lights and the openings of a room.
-    pub(super) fn of(scene: &Scene<Table>, id: LightId, sunlit: &[SunlitPlaces], openings: &[Opening]) -> Self {
+    pub(super) fn for_light(scene: &Scene<Table>, id: LightId, sunlit: &[SunlitPlaces], openings: &[Opening]) -> Self {
         let flux = scene.lights[id].flux();
         if flux > 0.0 && flux.is_finite() {
             return Self::Anywhere;
@@ -157,8 +157,8 @@ impl SkyStart {
         if light.sends_photons_from(ray.direction) {
             return self.beam.as_ref().is_some_and(|of| of.beam.place_in_disc(ray.origin, ray.direction).is_some());
         }
-        let back = Ray { direction: -ray.direction, ..*ray };
-        self.openings.iter().any(|opening| opening.is_entered_by(&back))
+        let reversed_ray = Ray { direction: -ray.direction, ..*ray };
+        self.openings.iter().any(|opening| opening.is_entered_by(&reversed_ray))
     }
 }
 

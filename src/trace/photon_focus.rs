@@ -10,12 +10,12 @@ use crate::shape::Ball;
 use crate::spectrum::Table;
 
 /// Number of camera rays along each side of the image.
-const SIDE: u32 = 24;
+const RAYS_PER_SIDE: u32 = 24;
 /// Maximum number of smooth surfaces that a ray passes, and of lights that are considered.
 const MAX_SURFACES: usize = 8;
 const MAX_LIGHTS: usize = 4;
 /// A distance beyond all surfaces.
-const FAR: f64 = 1e100;
+const FAR_DISTANCE: f64 = 1e100;
 /// Minimum number of places that show where light comes through.
 const MIN_PLACES: usize = 16;
 /// Places more than this factor farther from the camera than the nearest ones belong to the next part.
@@ -112,7 +112,7 @@ pub(super) fn places(
     if lights.is_empty() || balls.all(|ball| ball.is_some_and(|ball| !is_large(scene, &ball))) {
         return found;
     }
-    for [x, y] in scene.film.whole().middles_of_cells(SIDE) {
+    for [x, y] in scene.film.whole().middles_of_cells(RAYS_PER_SIDE) {
         let ray = scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
         let Some((receiver, primitive)) = walk_straight(scene, to, ray, f64::INFINITY, None, &mut found) else {
             continue;
@@ -177,7 +177,9 @@ fn walk_straight(
 /// Returns the vector from a place to the middle of a light; toward the sky, it leads beyond all surfaces.
 fn vector_to(light: &Light<Table>, place: DVec3) -> DVec3 {
     match light {
-        Light::Sun(_) | Light::Environment(_) => light.bright_direction([0.5; 2]).map_or(DVec3::ZERO, |sky| sky * FAR),
+        Light::Sun(_) | Light::Environment(_) => {
+            light.bright_direction([0.5; 2]).map_or(DVec3::ZERO, |sky| sky * FAR_DISTANCE)
+        }
         Light::Area(area) => area.visible_part().map_or(DVec3::ZERO, |part| part.0.center - place),
         Light::Point(point) => DVec3::from(point.position) - place,
         Light::Spot(spot) => DVec3::from(spot.position) - place,

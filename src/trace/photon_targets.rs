@@ -172,8 +172,8 @@ impl PhotonTargets {
     /// Learns from some photons of each target: their `guide_uv`, and whether the camera saw them.
     pub(super) fn learn(&mut self, found: &[Vec<([f64; 2], bool)>]) {
         for (target, photons) in self.targets.iter_mut().zip(found) {
-            let seen = photons.iter().filter(|photon| photon.1).count();
-            target.flux *= seen as f64 / photons.len().max(1) as f64;
+            let seen_count = photons.iter().filter(|photon| photon.1).count();
+            target.flux *= seen_count as f64 / photons.len().max(1) as f64;
             if target.beam.is_outside_ball {
                 target.guide = Arc::new(Guide::from_photons(photons));
             }
@@ -259,7 +259,7 @@ fn is_same_whole(_: &PhotonTarget, next: &PhotonTarget) -> bool {
 /// Returns the approximate flux that is sent to a whole. Some of it may have been seen only through the parts.
 fn flux(targets: &[PhotonTarget]) -> f64 {
     let (parts, wholes): (Vec<_>, Vec<_>) = targets.iter().partition(|target| target.is_part);
-    let sum = |of: Vec<&PhotonTarget>| of.iter().map(|target| target.flux).sum::<f64>();
+    let sum = |targets: Vec<&PhotonTarget>| targets.iter().map(|target| target.flux).sum::<f64>();
     f64::max(sum(wholes), sum(parts))
 }
 
@@ -271,14 +271,14 @@ pub(super) fn ball_around_all(scene: &Scene<Table>) -> Option<Ball> {
 /// Returns the ray of a path from the sky, started outside a ball around everything finite and beyond all planes.
 pub(super) fn started_outside(scene: &Scene<Table>, world: &Ball, ray: &Ray) -> Ray {
     let sky = -ray.direction;
-    let out = (world.center - ray.origin).dot(sky) + 2.0 * world.radius;
-    let mut back = Ray { origin: ray.origin + sky * out, direction: sky };
+    let distance_outside = (world.center - ray.origin).dot(sky) + 2.0 * world.radius;
+    let mut reversed_ray = Ray { origin: ray.origin + sky * distance_outside, direction: sky };
     // A ray crosses a plane once.
     for _ in scene.unbounded() {
-        let Some(hit) = scene.nearest(&back, f64::INFINITY, &|_| true) else { break };
-        back.origin += sky * (hit.intersection.t + world.radius);
+        let Some(hit) = scene.nearest(&reversed_ray, f64::INFINITY, &|_| true) else { break };
+        reversed_ray.origin += sky * (hit.intersection.t + world.radius);
     }
-    Ray { direction: ray.direction, ..back }
+    Ray { direction: ray.direction, ..reversed_ray }
 }
 
 /// Returns the balls that lie in no other ball. If more than `max_count` are left, neighbors are merged.

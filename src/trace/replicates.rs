@@ -8,7 +8,7 @@ use crate::film::{Filter, PassSum, SampleWeights};
 /// Number of replicates.
 pub const REPLICATES: usize = 8;
 /// Number of replicates in the first half.
-pub(super) const HALF: u32 = REPLICATES as u32 / 2;
+pub(super) const HALF_REPLICATES: u32 = REPLICATES as u32 / 2;
 
 /// The sums of the replicates over the pixels of a tile; empty if there is only one render.
 ///

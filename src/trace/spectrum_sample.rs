@@ -151,7 +151,7 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
     }
 
     /// Adds everything that was kept to rows of sums, and resets it. If nothing is subtracted, the second may be empty.
-    pub(super) fn hand_over(&mut self, rows: [&mut [f64]; 2]) {
+    pub(super) fn add_sums_to(&mut self, rows: [&mut [f64]; 2]) {
         let Self { spectrum, sums: kept, .. } = self;
         for (row, kept) in rows.into_iter().zip(kept).filter(|(row, _)| !row.is_empty()) {
             let row = &mut row[spectrum.offset..][..kept.bands.len()];

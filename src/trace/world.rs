@@ -131,8 +131,9 @@ impl World {
         if self.has_media {
             let (scene, camera) = (&self.scene, &self.scene.camera);
             let [position, forward] = [camera.position(), camera.forward()];
-            let around = |seen| Media::around_among(scene, position, forward, &|object| scene.is_seen(object) == seen);
-            (self.camera_media, self.hidden_media) = (around(true), around(false));
+            let media_around =
+                |seen| Media::around_among(scene, position, forward, &|object| scene.is_seen(object) == seen);
+            (self.camera_media, self.hidden_media) = (media_around(true), media_around(false));
         }
     }
 
@@ -381,5 +382,7 @@ impl World {
 }
 
 fn path_starts(scene: &Scene<Table>, method: &Method) -> Arc<[PathStart]> {
-    (0..scene.lights.len()).map(|id| PathStart::of(scene, id, &method.sunlit, &method.openings.openings)).collect()
+    (0..scene.lights.len())
+        .map(|id| PathStart::for_light(scene, id, &method.sunlit, &method.openings.openings))
+        .collect()
 }

@@ -10,8 +10,8 @@ use crate::spectrum::Curve;
 const MAX_LIGHTS: usize = 4096;
 /// Fractions of the scene's size: the distance from which a place is probed, and the distance within which a surface
 /// counts as being there. The latter is far above rounding errors and far below anything intended.
-const STEP: f64 = 1e-7;
-const NEAR: f64 = 1e-13;
+const PROBE_DISTANCE: f64 = 1e-7;
+const SURFACE_TOLERANCE: f64 = 1e-13;
 
 /// Returns warnings about the camera, point lights and spotlights that lie in a surface.
 ///
@@ -46,7 +46,7 @@ pub(super) fn on_surface(scene: &Scene<Curve>) -> Vec<String> {
 fn surface_at(scene: &Scene<Curve>, place: DVec3, size: f64) -> Option<u32> {
     // At least one of the three axes leads through the surface, whatever its normal.
     DVec3::AXES.into_iter().find_map(|direction| {
-        let hit = scene.intersect(&Ray { origin: place - direction * (STEP * size), direction })?;
-        ((hit.intersection.t - STEP * size).abs() <= NEAR * size).then_some(hit.object)
+        let hit = scene.intersect(&Ray { origin: place - direction * (PROBE_DISTANCE * size), direction })?;
+        ((hit.intersection.t - PROBE_DISTANCE * size).abs() <= SURFACE_TOLERANCE * size).then_some(hit.object)
     })
 }

@@ -10,7 +10,7 @@ use crate::spectrum::Curve;
 /// Maximum number of flat surfaces that are checked.
 const MAX_SURFACES: usize = 1024;
 /// Rays into the body behind each surface.
-const RAYS: u32 = 64;
+const RAYS_PER_SURFACE: u32 = 64;
 
 /// Returns a warning about quads, discs and triangles of a dielectric behind which light may go on forever.
 ///
@@ -31,7 +31,7 @@ pub(super) fn open_glass(scene: &Scene<Curve>) -> Option<String> {
 
 /// Returns whether light that enters through a surface may meet nothing else.
 fn is_open(scene: &Scene<Curve>, shape: &Shape) -> bool {
-    (0..RAYS).any(|number| {
+    (0..RAYS_PER_SURFACE).any(|number| {
         let sampler = Sampler::new(5, [number, 0], 0);
         let [x, y, z, _] = sampler.get_random_4d(BranchKey::CAMERA, 0);
         let [a, b, c, d] = sampler.get_random_4d(BranchKey::CAMERA, 1);

@@ -14,9 +14,9 @@ use crate::shape::{Shape, Sides, SurfacePoint};
 use crate::spectrum::Curve;
 
 /// Paths traced from one light.
-const PATHS: u32 = 256;
+const PATHS_PER_LIGHT: u32 = 256;
 /// Points in all clear bodies that are tested for light from the sky.
-const POINTS: usize = 1024;
+const TEST_POINTS: usize = 1024;
 /// Rays that look for a hole to the sky. If one of the `FIRST_HOLE_RAYS` finds a hole, it is not a small one.
 const HOLE_RAYS: u32 = 1 << 19;
 const FIRST_HOLE_RAYS: u32 = 1 << 8;
@@ -130,7 +130,7 @@ fn reaches(view: &View, light: &Light<Curve>, place: &SurfaceSide) -> bool {
 fn reaches_a_clear_body(view: &View, light: &Light<Curve>) -> bool {
     let clear = (0..view.scene.objects.len()).filter(|&object| view.scene.is_clear(object as u32));
     let boxes: Vec<_> = clear.filter_map(|object| view.scene.objects[object].shape.bounds()).collect();
-    (0..POINTS).filter(|_| !boxes.is_empty()).any(|number| {
+    (0..TEST_POINTS).filter(|_| !boxes.is_empty()).any(|number| {
         let sampler = Sampler::new(4, [number as u32, 0], 0);
         let ([x, y, z, _], [u, v, ..]) =
             (sampler.get_random_4d(BranchKey::CAMERA, 0), sampler.get_random_4d(BranchKey::CAMERA, 1));
@@ -155,9 +155,9 @@ fn sees_through_a_hole(view: &View) -> bool {
 
 /// Traces paths from a lamp, a point light or a spotlight.
 fn trace_paths(view: &View, light: &Light<Curve>) -> Paths {
-    let own = if let Light::Area(area) = light { Some(area.object) } else { None };
+    let own_object = if let Light::Area(area) = light { Some(area.object) } else { None };
     let mut meets_others = false;
-    for number in 0..PATHS {
+    for number in 0..PATHS_PER_LIGHT {
         let sampler = Sampler::new(3, [number, 0], 0);
         let Some(Start { ray, surface }) = sample_start(light, &sampler) else { continue };
         if surface.is_some_and(|place| view.is_in_view(&place)) {
@@ -168,7 +168,7 @@ fn trace_paths(view: &View, light: &Light<Curve>) -> Paths {
             return Paths::Seen;
         }
         let seen = view.walk(false, ray, &sampler, |place| {
-            meets_others |= own != Some(place.object);
+            meets_others |= own_object != Some(place.object);
             let shines = matches!(view.scene.material_of(place.object), Material::Emissive(_));
             !shines && view.is_seen(&place, number)
         });

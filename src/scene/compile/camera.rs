@@ -5,7 +5,7 @@ use std::ops::Bound;
 use super::context::Context;
 use super::ranges::{MAX_LENGTH, direction, length, point, radians_hint};
 use crate::math::DVec3;
-use crate::scene::text::{Fields, Value, above_0_to, at, six_digits};
+use crate::scene::text::{Fields, Value, above_0_to, six_digits, spanned};
 use crate::scene::{Camera, FilmSettings, Lens, PolarizingFilter, Projection};
 
 /// Smallest focus distance. The slope by which a lens bends rays, its radius over this distance, stays within f64.
@@ -30,8 +30,8 @@ const MAX_SHIFT: f64 = 1000.0;
 pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSettings>) -> Option<Camera> {
     Fields::read(value, |camera| {
         let position = camera.need("position", point);
-        let target = camera.need("look_at", at(point));
-        let up = camera.maybe("up", at(direction));
+        let target = camera.need("look_at", spanned(point));
+        let up = camera.maybe("up", spanned(direction));
         let filter = camera.maybe("polarizer", filter);
         let named = camera.get("projection");
         let kind = named.map_or(Some(ProjectionKind::Perspective), |value| value.word(&PROJECTIONS));
@@ -40,7 +40,7 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
         let far = position.zip(target.as_ref()).map(|(position, target)| (target.it - position).length());
         let lens = camera.maybe("lens", |value| lens(value, far));
         let near = camera.or("near", 0.0, |value| {
-            value.within(0.0..=MAX_LENGTH, &format!("near is a distance from 0 to {MAX_LENGTH:e}"), None)
+            value.number_within(0.0..=MAX_LENGTH, &format!("near is a distance from 0 to {MAX_LENGTH:e}"), None)
         });
         let sensor = camera.maybe("sensor_width", |value| sensor_width(value, kind?));
         let (position, target, up) = (position?, target?, up?);
@@ -91,7 +91,7 @@ fn projection(context: &mut Context, camera: &mut Fields, kind: Option<Projectio
         }
         (ProjectionKind::Perspective, Some(value), None) => {
             let between = (Bound::Excluded(0.0), Bound::Excluded(180.0));
-            let vertical_fov = value.within(between, "a field of view lies between 0 and 180 degrees", None)?;
+            let vertical_fov = value.number_within(between, "a field of view lies between 0 and 180 degrees", None)?;
             if let Some(radians) = radians_hint(vertical_fov) {
                 context.warn_at(value, format!("a field of view of {vertical_fov} degrees is very narrow{radians}"));
             }
@@ -120,7 +120,7 @@ fn sensor_width(value: Value, kind: ProjectionKind) -> Option<f64> {
     match kind {
         ProjectionKind::Perspective => {
             let help = "in millimeters: 36 for a full-frame camera, 24.9 for Super 35";
-            value.within(
+            value.number_within(
                 above_0_to(MAX_SENSOR_WIDTH),
                 &format!("a sensor width is above 0 and at most {MAX_SENSOR_WIDTH:e} mm"),
                 Some(help),
@@ -150,7 +150,11 @@ fn shift(value: Value) -> Option<[f64; 2]> {
 fn lens(value: Value, far: Option<f64>) -> Option<Lens> {
     Fields::read(value, |lens| {
         let radius = lens.need("radius", |value| {
-            value.within(0.0..=MAX_LENGTH, &format!("the radius of a lens is a length from 0 to {MAX_LENGTH:e}"), None)
+            value.number_within(
+                0.0..=MAX_LENGTH,
+                &format!("the radius of a lens is a length from 0 to {MAX_LENGTH:e}"),
+                None,
+            )
         });
         let Some(focus) = lens.get("focus_distance") else {
             let help = far.map(|far| format!("`look_at` is {} scene units away", six_digits(far)));
@@ -158,7 +162,7 @@ fn lens(value: Value, far: Option<f64>) -> Option<Lens> {
         };
         let help = "write inf to focus at infinity";
         let rule = format!("a focus distance is at least {MIN_FOCUS_DISTANCE:e}");
-        let focus = focus.within(MIN_FOCUS_DISTANCE..=f64::INFINITY, &rule, Some(help));
+        let focus = focus.number_within(MIN_FOCUS_DISTANCE..=f64::INFINITY, &rule, Some(help));
         Some(Lens::new(radius?, focus?))
     })
 }
@@ -169,7 +173,7 @@ fn filter(value: Value) -> Option<PolarizingFilter> {
     Fields::read(value, |filter| {
         let axis = filter.need("axis", |value| {
             let help = "in degrees: 0 points to the right of the image, 90 to its top";
-            value.within(-360.0..=360.0, "an axis lies between -360 and 360 degrees", Some(help))
+            value.number_within(-360.0..=360.0, "an axis lies between -360 and 360 degrees", Some(help))
         });
         let extinction = filter.or("extinction", 0.0, extinction);
         Some(PolarizingFilter { angle: axis?.to_radians(), extinction: extinction? })
@@ -179,5 +183,5 @@ fn filter(value: Value) -> Option<PolarizingFilter> {
 /// Reads the transmittance of a polarizer across its axis, relative to that along the axis.
 pub(super) fn extinction(value: Value) -> Option<f64> {
     let help = "relative to the transmittance along the axis: 0 for a perfect polarizer, about 0.0001 for a sheet";
-    value.within(0.0..=1.0, "an extinction lies between 0 and 1", Some(help))
+    value.number_within(0.0..=1.0, "an extinction lies between 0 and 1", Some(help))
 }

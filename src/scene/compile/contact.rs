@@ -10,7 +10,7 @@ use crate::scene::checks::ray_into;
 use crate::shape::{Plane, Shape};
 
 /// Rays by which two bodies are compared: enough to find a shared part that is a fiftieth of the visible surface.
-const RAYS: u32 = 256;
+const COMPARED_RAYS: u32 = 256;
 /// Maximum number of surfaces of a body that a ray is followed through.
 const MAX_SURFACES: usize = 4;
 
@@ -93,7 +93,7 @@ fn share_surface(body: &Object, other: &Object) -> bool {
     let Some(bounds) = body.shape.bounds() else { return false };
     let size = bounds.size().length();
     let step = 1e-3 * size;
-    (0..RAYS).any(|number| {
+    (0..COMPARED_RAYS).any(|number| {
         let [u, v, x, y] = Sampler::new(0, [0, 0], number).get_4d(BranchKey::CAMERA, 0);
         let [z, ..] = Sampler::new(0, [1, 0], number).get_4d(BranchKey::CAMERA, 0);
         let Some(mut ray) = ray_into(&bounds, DVec3::new(x, y, z), [u, v]) else { return false };

@@ -2,7 +2,7 @@
 
 use toml::de::DeValue;
 
-use crate::scene::text::{Fields, Spanned, Value, at, exactly};
+use crate::scene::text::{Fields, Spanned, Value, exactly, spanned};
 use crate::spectrum::{Channel, Encoding, Placement, Quantity, TexelFilter, Wrap};
 
 /// Maximum number of repetitions in a unit. One over it is the minimum.
@@ -60,15 +60,15 @@ const KINDS: [(&str, SpectrumReader); 11] = [
     }),
     ("sellmeier", |value| {
         Fields::read(value, |table| {
-            let b = table.need("b", at(|value: Value| value.list(finite_number)));
-            let c = table.need("c", at(|value: Value| value.list(finite_number)));
+            let b = table.need("b", spanned(|value: Value| value.list(finite_number)));
+            let c = table.need("c", spanned(|value: Value| value.list(finite_number)));
             Some(KindText::Sellmeier { b: b?, c: c? })
         })
     }),
     ("abbe", |value| {
         Fields::read(value, |table| {
-            let nd = table.need("nd", at(finite_number));
-            let vd = table.need("vd", at(finite_number));
+            let nd = table.need("nd", spanned(finite_number));
+            let vd = table.need("vd", spanned(finite_number));
             Some(KindText::Abbe { nd: nd?, vd: vd? })
         })
     }),
@@ -194,14 +194,14 @@ impl<'d> CurveText<'d> {
 fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, quantity: Quantity) -> Option<CurveText<'d>> {
     table.exclude_hints(foreign_keys(quantity));
     let kinds = KINDS.map(|(key, read)| table.get(key).map(|place| (place, read(place))));
-    let column = table.maybe("column", at(|value: Value| value.whole(0..=u64::MAX)));
-    let encoding = table.maybe("encoding", at(|value: Value| value.word(&ENCODINGS)));
+    let column = table.maybe("column", spanned(|value: Value| value.whole_number(0..=u64::MAX)));
+    let encoding = table.maybe("encoding", spanned(|value: Value| value.word(&ENCODINGS)));
     let channel = table.maybe("channel", |value| value.word(&CHANNELS));
     let wrap = table.or("wrap", Wrap::default(), |value| value.word(&WRAPS));
     let filter = table.or("filter", TexelFilter::default(), |value| value.word(&FILTERS));
-    let repeat = table.or("repeat", Spanned { place: value, it: [1.0; 2] }, at(one_or_two));
-    let scale = table.or("scale", Spanned { place: value, it: 1.0 }, at(Value::number));
-    let luminance = table.maybe("luminance", at(Value::number));
+    let repeat = table.or("repeat", Spanned { place: value, it: [1.0; 2] }, spanned(one_or_two));
+    let scale = table.or("scale", Spanned { place: value, it: 1.0 }, spanned(Value::number));
+    let luminance = table.maybe("luminance", spanned(Value::number));
     let mut given = kinds.into_iter().flatten();
     let Some((place, kind)) = given.next() else {
         let help = format!("such as {}", example(quantity));

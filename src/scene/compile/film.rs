@@ -5,7 +5,7 @@ use toml::de::DeValue;
 use super::format::format;
 use crate::film::{Filter, Format, Mitchell, Overscan, Window};
 use crate::scene::FilmSettings;
-use crate::scene::text::{Choice, Fields, Value, at};
+use crate::scene::text::{Choice, Fields, Value, spanned};
 use crate::spectrum::ColorSpace;
 
 /// ```toml
@@ -28,12 +28,12 @@ use crate::spectrum::ColorSpace;
 pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
     Fields::read(value, |film| {
         let width = film.need("width", side);
-        let height = film.need("height", at(side));
+        let height = film.need("height", spanned(side));
         let filter = film.or("filter", Filter::default(), filter);
         let spaces = ColorSpace::ALL.map(|space| (space.interop_id(), space));
         let color_space = film.or("color_space", ColorSpace::default(), |value| value.word(&spaces));
-        let overscan = film.maybe("overscan", at(overscan));
-        let crop = film.maybe("crop", at(crop));
+        let overscan = film.maybe("overscan", spanned(overscan));
+        let crop = film.maybe("crop", spanned(crop));
         let format = format(film);
         let (width, height) = (width?, height?);
         let (pixels, most) = (u64::from(width) * u64::from(height.it), FilmSettings::MAX_PIXELS);
@@ -64,7 +64,7 @@ pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
 }
 
 fn side(value: Value) -> Option<u32> {
-    value.whole(1..=FilmSettings::MAX_SIDE.into())
+    value.whole_number(1..=FilmSettings::MAX_SIDE.into())
 }
 
 fn crop(value: Value) -> Option<Window> {
@@ -116,7 +116,9 @@ fn wide(value: Value, key: &'static str, filter: fn(f64) -> Filter) -> Option<Fi
 fn mitchell(value: Value) -> Option<Filter> {
     Fields::read(value, |table| {
         let parameter = |key: &'static str| {
-            move |value: Value| value.within(0.0..=1.0, &format!("{key} lies between 0 and 1"), Some(MITCHELL_HELP))
+            move |value: Value| {
+                value.number_within(0.0..=1.0, &format!("{key} lies between 0 and 1"), Some(MITCHELL_HELP))
+            }
         };
         let [b, c] = ["b", "c"].map(|key| table.need(key, parameter(key)));
         Some(Filter::Mitchell(Mitchell { b: b?, c: c? }))

@@ -14,7 +14,7 @@ pub(super) fn diffuse<'d>(fields: &mut Fields<'d>) -> Option<Diffuse<SpectrumDra
 fn fluorescence<'d>(fields: &mut Fields<'d>) -> Option<Fluorescence<SpectrumDraft<'d>>> {
     let [absorption, emission] = ["absorption", "emission"].map(|key| spectrum(fields, key));
     let help = "photons emitted per photon absorbed: 0.9 for most highlighters";
-    let share = |value: Value| value.within(0.0..=1.0, "a quantum yield lies between 0 and 1", Some(help));
+    let share = |value: Value| value.number_within(0.0..=1.0, "a quantum yield lies between 0 and 1", Some(help));
     let quantum_yield = fields.need("quantum_yield", share);
     Some(Fluorescence { absorption, emission, quantum_yield: quantum_yield? })
 }

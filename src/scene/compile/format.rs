@@ -4,7 +4,7 @@ use toml::de::DeValue;
 
 use super::ranges::wavelength_unit_hint;
 use crate::film::{Compression, FirstSurface, Format, Layer, Precision};
-use crate::scene::text::{Fields, Spanned, Value, above_0_to, at};
+use crate::scene::text::{Fields, Spanned, Value, above_0_to, spanned};
 use crate::spectrum::WavelengthBands;
 use crate::spectrum::visible::{FIRST_NM, LAST_NM};
 
@@ -16,7 +16,7 @@ pub(super) fn format(film: &mut Fields) -> Option<Format> {
     let layers = film.or("layers", Vec::new(), layers);
     let first = film.or("first", FirstSurface::default(), |value| value.word(&FirstSurface::NAMES));
     let precision = film.maybe("precision", |value| value.word(&Precision::NAMES));
-    let compression = film.maybe("compression", at(compression));
+    let compression = film.maybe("compression", spanned(compression));
     let multipart = film.or("multipart", false, Value::yes_or_no);
     let stokes = film.or("stokes", false, Value::yes_or_no);
     let spectral = film.or("spectral", None, spectral);
@@ -61,8 +61,10 @@ fn white_luminance(film: &mut Fields) -> Option<Option<f64>> {
     let is_absolute = film.or("radiometry", false, |value| value.word(&[("absolute", true), ("relative", false)]));
     let help = "in cd/m2: the white of a screen is about 100";
     let rule = format!("a luminance of white is above 0 and at most {MAX_WHITE_LUMINANCE:e}");
-    let white = film
-        .maybe("white_luminance", at(|value: Value| value.within(above_0_to(MAX_WHITE_LUMINANCE), &rule, Some(help))));
+    let white = film.maybe(
+        "white_luminance",
+        spanned(|value: Value| value.number_within(above_0_to(MAX_WHITE_LUMINANCE), &rule, Some(help))),
+    );
     match (is_absolute?, white?) {
         (true, white) => Some(Some(white.map_or(1.0, |white| white.it))),
         (false, None) => Some(None),
@@ -86,10 +88,10 @@ fn spectral(value: Value) -> Option<Option<WavelengthBands>> {
         let nm = |value: Value| {
             let visible_nm = FIRST_NM..=LAST_NM;
             let unit = wavelength_unit_hint(value.number()?, visible_nm.clone());
-            value.within(visible_nm, "a band lies between 360 and 830 nm", unit.as_deref())
+            value.number_within(visible_nm, "a band lies between 360 and 830 nm", unit.as_deref())
         };
         let most = above_0_to(LAST_NM - FIRST_NM);
-        let width = |value: Value| value.within(most, "a step is a width above 0 and at most 470 nm", None);
+        let width = |value: Value| value.number_within(most, "a step is a width above 0 and at most 470 nm", None);
         let [from, to, step] = [bands.or("from", 380.0, nm), bands.or("to", 780.0, nm), bands.or("step", 5.0, width)];
         Some([from?, to?, step?])
     })?;
@@ -139,8 +141,11 @@ const TELEVISION_RATES: [u32; 5] = [24, 30, 48, 60, 120];
 /// Reads a frame rate, as a number of frames and the seconds that they take.
 fn rate(value: Value) -> Option<[u32; 2]> {
     let help = Some("for instance: 24, or 23.976");
-    let rate =
-        value.within(above_0_to(1000.0), "a rate is a number of frames per second, above 0 and at most 1000", help)?;
+    let rate = value.number_within(
+        above_0_to(1000.0),
+        "a rate is a number of frames per second, above 0 and at most 1000",
+        help,
+    )?;
     let is_slowed = |whole: &u32| (rate - f64::from(*whole) / 1.001).abs() < 0.005;
     Some(match TELEVISION_RATES.into_iter().find(is_slowed) {
         Some(whole) => [1000 * whole, 1001],

@@ -11,7 +11,7 @@ use crate::scene::{Object, Visibility};
 use crate::shape::{Shape, SurfacePoint};
 
 /// Points of a body that must all lie in the other one.
-const POINTS: u32 = 64;
+const TEST_POINTS: u32 = 64;
 /// Maximum number of clear bodies that are compared with one another.
 const MAX_BODIES: usize = 2048;
 
@@ -55,7 +55,7 @@ fn lies_within(body: &Shape, other: &Shape) -> bool {
     if !is_in_box || !other.is_closed() || !body.is_closed() {
         return false;
     }
-    let points = (0..POINTS).filter_map(|number| {
+    let points = (0..TEST_POINTS).filter_map(|number| {
         let sampler = Sampler::new(6, [number, 0], 0);
         let [x, y, z, _] = sampler.get_random_4d(BranchKey::CAMERA, 0);
         let [u, v, ..] = sampler.get_random_4d(BranchKey::CAMERA, 1);

@@ -108,12 +108,12 @@ impl TextureReader<'_> {
                 };
                 let table: Vec<f32> = (0..=u16::MAX).map(|word| value(word) as f32).collect();
                 let ignores_alpha = !directions && selection.ignores(&numbers, u16::MAX);
-                let floats = selection.of(&numbers).map(|word| table[usize::from(word)]).collect();
+                let floats = selection.select(&numbers).map(|word| table[usize::from(word)]).collect();
                 self.with_warnings(Image::of_floats(width, selection.channels(), floats), ignores_alpha, not_srgb)
             }
             IntegerTexels::Bytes(numbers) => {
                 let ignores_alpha = !directions && selection.ignores(&numbers, u8::MAX);
-                let (channels, bytes) = (selection.channels(), selection.of(&numbers).collect());
+                let (channels, bytes) = (selection.channels(), selection.select(&numbers).collect());
                 let image = match directions {
                     true => Image::of_signed_bytes(width, channels, bytes),
                     false => Image::of_bytes(width, channels, bytes, srgb),
@@ -132,7 +132,7 @@ impl TextureReader<'_> {
         let selection = self.select_channels(image.channels, image.has_alpha)?;
         let ignores_alpha = !directions && selection.ignores(&image.numbers, 1.0);
         let (width, channels) = (image.width, selection.channels());
-        let numbers = if selection.is_all() { image.numbers } else { selection.of(&image.numbers).collect() };
+        let numbers = if selection.is_all() { image.numbers } else { selection.select(&image.numbers).collect() };
         let mut texels = Texels { path: self.path, width, channels, numbers };
         texels.check(self.meaning, image.is_lossy)?;
         if directions {
@@ -197,7 +197,7 @@ impl ChannelSelection {
         self.channels() == self.stride
     }
 
-    fn of<'a, T: Copy>(&'a self, numbers: &'a [T]) -> impl Iterator<Item = T> + 'a {
+    fn select<'a, T: Copy>(&'a self, numbers: &'a [T]) -> impl Iterator<Item = T> + 'a {
         numbers.chunks_exact(self.stride).flat_map(|texel| texel[self.first..=self.last].iter().copied())
     }
 

@@ -8,7 +8,7 @@ use crate::scene::text::and_more;
 use crate::shape::Shape;
 
 /// Rays that vote on a mesh: an odd number, so that one ray that grazes an edge does not decide.
-const RAYS: u32 = 5;
+const VOTING_RAYS: u32 = 5;
 /// Directions that are tried until a ray hits the mesh.
 const MAX_TRIES: u32 = 16;
 /// Maximum number of surfaces that a ray crosses.
@@ -31,15 +31,15 @@ pub(super) fn inside_out(placed: &PlacedObjects) -> Option<String> {
 }
 
 fn faces_inward(objects: &[Object], number: usize) -> bool {
-    let votes = (0..RAYS).filter_map(|ray| ray_from_inside(&objects[number].shape, ray));
+    let votes = (0..VOTING_RAYS).filter_map(|ray| ray_from_inside(&objects[number].shape, ray));
     let winding = |ray: &Ray| {
-        let own = winding_number(&objects[number].shape, ray);
-        if own >= 0 {
-            return own;
+        let own_winding = winding_number(&objects[number].shape, ray);
+        if own_winding >= 0 {
+            return own_winding;
         }
         let others = objects.iter().enumerate();
         let same = others.filter(|(other, body)| *other != number && body.material == objects[number].material);
-        own + same.map(|(_, body)| winding_number(&body.shape, ray)).sum::<i32>()
+        own_winding + same.map(|(_, body)| winding_number(&body.shape, ray)).sum::<i32>()
     };
     let (against, all) = votes.fold((0, 0), |(against, all), ray| (against + u32::from(winding(&ray) < 0), all + 1));
     2 * against > all

@@ -14,7 +14,7 @@ use super::transform::{Step, compose_steps, steps};
 use crate::light::{Environment, Light, Panorama, Point, Sky, SkyPolarization, Spot, Sun};
 use crate::math::{DMat3, DVec3, Transform};
 use crate::scene::Scene;
-use crate::scene::text::{Fields, Spanned, Value, above_0_to, at};
+use crate::scene::text::{Fields, Spanned, Value, above_0_to, spanned};
 use crate::spectrum::{Curve, Placement, Quantity};
 
 /// A light of a scene.
@@ -32,8 +32,8 @@ pub(super) struct LightEntry {
 pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment: &mut bool) -> Option<LightEntry> {
     Fields::read(value, |entry| {
         let name = entry.maybe("name", object::name);
-        let own = entry.maybe("group", object::group);
-        let visible = entry.maybe("visible_to_camera", at(Value::yes_or_no));
+        let own_group = entry.maybe("group", object::group);
+        let visible = entry.maybe("visible_to_camera", spanned(Value::yes_or_no));
         let kinds = ["environment", "point", "spot", "sun"].map(|kind| entry.get(kind));
         let given: Vec<Value> = kinds.into_iter().flatten().collect();
         let place = match given.as_slice() {
@@ -48,7 +48,7 @@ pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment
                 return last.advise("a light has exactly one kind", "start another [[light]] for the second");
             }
         };
-        let (group, visible) = (own?.or(name?), visible?);
+        let (group, visible) = (own_group?.or(name?), visible?);
         if let Some(visible) = visible.filter(|_| matches!(place.key(), "point" | "spot")) {
             let message = "point lights and spotlights are too small to be seen";
             return visible.place.advise(message, "leave `visible_to_camera` out");
@@ -137,15 +137,15 @@ fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>
         let toward = light.need("toward", direction);
         // The apparent diameter of the sun.
         let angular_diameter = light.or("angular_diameter", 0.533, |value| {
-            let across = value.within(0.0..=180.0, "a sun is 0 to 180 degrees across", None)?;
-            if SUN_RADIANS.contains(&across) {
-                let meant = across.to_degrees();
+            let degrees = value.number_within(0.0..=180.0, "a sun is 0 to 180 degrees across", None)?;
+            if SUN_RADIANS.contains(&degrees) {
+                let meant = degrees.to_degrees();
                 let warning = format!(
-                    "a sun of {across} degrees is hardly wider than a point; if radians are meant, write {meant:.3}"
+                    "a sun of {degrees} degrees is hardly wider than a point; if radians are meant, write {meant:.3}"
                 );
                 context.warn_at(value, warning);
             }
-            Some(across)
+            Some(degrees)
         });
         let irradiance = light.need("irradiance", |value| emission(context, value));
         let help = "toward = [1, 2, 1] is the direction from the scene to the sun";
@@ -158,18 +158,18 @@ fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>
 fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>> {
     Fields::read(value, |light| {
         let position = light.need("position", point);
-        let toward = light.maybe("toward", at(direction));
-        let target = light.maybe("look_at", at(point));
+        let toward = light.maybe("toward", spanned(direction));
+        let target = light.maybe("look_at", spanned(point));
         let cone_angle = light.need("cone_angle", |value| {
             let cone_angle =
-                value.within(above_0_to(180.0), "a cone angle is above 0 and at most 180 degrees", None)?;
+                value.number_within(above_0_to(180.0), "a cone angle is above 0 and at most 180 degrees", None)?;
             if let Some(radians) = radians_hint(cone_angle) {
                 context.warn_at(value, format!("a cone of {cone_angle} degrees lights very little{radians}"));
             }
             Some(cone_angle)
         });
-        let blend =
-            light.or("blend", 0.15, |value| value.within(0.0..=1.0, "blend is a fraction of the cone, 0 to 1", None));
+        let blend = light
+            .or("blend", 0.15, |value| value.number_within(0.0..=1.0, "blend is a fraction of the cone, 0 to 1", None));
         let intensity = light.need("intensity", |value| intensity(context, value));
         refuse_entry_keys(light, "spot", &POINT_LIGHT_KEYS);
         let position = position?;
@@ -203,7 +203,7 @@ fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve
 fn environment_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Environment<Curve>> {
     Fields::read(value, |light| {
         let radiance = light.need("radiance", |value| CurveText::read(value, Quantity::Emission));
-        let turn = light.maybe("transform", at(steps));
+        let turn = light.maybe("transform", spanned(steps));
         let polarization = light.maybe("polarization", sky_polarization);
         refuse_infinite_light_keys(light, "environment");
         let (radiance, polarization) = (radiance?, polarization?);
@@ -237,7 +237,7 @@ fn sky_polarization(value: Value) -> Option<SkyPolarization> {
         let sun = sky.need("sun", direction);
         let degree = sky.need("degree", |value| {
             let help = "a clear sky is polarized by 0.7 to 0.8 at 90 degrees from the sun";
-            value.within(0.0..=1.0, "a degree of polarization lies between 0 and 1", Some(help))
+            value.number_within(0.0..=1.0, "a degree of polarization lies between 0 and 1", Some(help))
         });
         Some(SkyPolarization { sun: sun?.normalize(), degree: degree? })
     })

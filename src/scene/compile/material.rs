@@ -33,7 +33,7 @@ fn roughness(fields: &mut Fields) -> f64 {
             let help = format!("if this is in percent, write {}", six_digits(percent / 100.0));
             value.advise(format!("{rule}, not {percent}"), help)
         }
-        _ => value.within(0.0..=1.0, rule, None),
+        _ => value.number_within(0.0..=1.0, rule, None),
     };
     fields.or("roughness", 0.0, read).unwrap_or_default()
 }
@@ -98,14 +98,14 @@ fn retardance(context: &mut Context, fields: &mut Fields) -> Option<Retardance> 
         (Some(phase), None) => {
             let help = "in degrees: 90 for a quarter-wave plate, 180 for a half-wave plate";
             let rule = "a retardance lies between -360 and 360 degrees";
-            let degrees = phase.within(-360.0..=360.0, rule, Some(help))?;
+            let degrees = phase.number_within(-360.0..=360.0, rule, Some(help))?;
             small_retardance(degrees).into_iter().for_each(|warning| context.warn_at(phase, warning));
             Some(Retardance::Phase(degrees))
         }
         (None, Some(path)) => {
             let rule = format!("a retardation lies between -{MAX_RETARDATION_NM} and {MAX_RETARDATION_NM} nm");
             let help = "in nm: 137.5 for a quarter-wave plate at 550 nm";
-            let nm = path.within(-MAX_RETARDATION_NM..=MAX_RETARDATION_NM, &rule, Some(help))?;
+            let nm = path.number_within(-MAX_RETARDATION_NM..=MAX_RETARDATION_NM, &rule, Some(help))?;
             if nm != 0.0 && nm.abs() < MIN_RETARDATION_NM {
                 let in_nm = nm * 1e9;
                 let help = match in_nm.abs() {

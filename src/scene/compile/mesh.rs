@@ -8,7 +8,7 @@ use super::context::Context;
 use super::ranges::{COORDINATE, MAX_LENGTH, direction, in_range, is_coordinate, point, range_error};
 use super::shape_text::ShapeText;
 use crate::math::DVec3;
-use crate::scene::text::{Fields, Numbers, Rows, Spanned, Value, at};
+use crate::scene::text::{Fields, Numbers, Rows, Spanned, Value, spanned};
 use crate::shape::{Attributes, Faces, Mesh, Shape, Vertices, read_mesh, vertex_normals};
 
 /// Extensions of mesh files.
@@ -35,11 +35,11 @@ struct InlineMesh<'d> {
 /// Reads `mesh = { file = "cup.ply", smooth = true }`, or `points`, `faces`, `normals` and `uv` in place of the file.
 pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> Option<ShapeText<'d>> {
     Fields::read(value, |mesh| {
-        let file = mesh.maybe("file", at(Value::text));
-        let points = mesh.maybe("points", at(points));
-        let faces = mesh.maybe("faces", at(faces));
-        let normals = mesh.maybe("normals", at(normals));
-        let uv = mesh.maybe("uv", at(coordinates));
+        let file = mesh.maybe("file", spanned(Value::text));
+        let points = mesh.maybe("points", spanned(points));
+        let faces = mesh.maybe("faces", spanned(faces));
+        let normals = mesh.maybe("normals", spanned(normals));
+        let uv = mesh.maybe("uv", spanned(coordinates));
         let smooth = mesh.maybe("smooth", Value::yes_or_no);
         let has_unknown_keys = mesh.has_unknown();
         let (file, smooth) = (file?, smooth?);

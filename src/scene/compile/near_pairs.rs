@@ -21,7 +21,7 @@ pub(super) fn near_pairs(boxes: &[Option<Bounds>], is_checked: &[bool]) -> Vec<(
     let grid = Grid::new(boxes);
     let from = |boxed: &Boxed| boxed.bounds.min[grid.along] - tolerance(&boxed.bounds);
     let to = |boxed: &Boxed| boxed.bounds.max[grid.along] + tolerance(&boxed.bounds);
-    let mut order: Vec<Boxed> = (0..boxes.len()).filter_map(|object| Boxed::of(boxes, object)).collect();
+    let mut order: Vec<Boxed> = (0..boxes.len()).filter_map(|object| Boxed::from_bounds(boxes, object)).collect();
     order.sort_by(|a, b| from(a).total_cmp(&from(b)));
     // Most objects of most scenes are not marked, and are compared only with the few that are.
     let (mut open, mut open_checked) = (OpenObjects::new(&grid), OpenObjects::new(&grid));
@@ -52,7 +52,7 @@ struct Boxed {
 }
 
 impl Boxed {
-    fn of(boxes: &[Option<Bounds>], object: usize) -> Option<Self> {
+    fn from_bounds(boxes: &[Option<Bounds>], object: usize) -> Option<Self> {
         Some(Self { object, bounds: boxes[object]? })
     }
 }
@@ -174,7 +174,7 @@ mod tests {
             let boxes: Vec<Option<Bounds>> = (0..300).map(|number| boxed(number).flatten()).collect();
             let is_checked: Vec<bool> = (0..300).map(|number| number % 4 == 0).collect();
             let all = (0..300).flat_map(|low| (low + 1..300).map(move |high| [low, high]));
-            let boxed = |number: usize| Boxed::of(&boxes, number);
+            let boxed = |number: usize| Boxed::from_bounds(&boxes, number);
             let expected = all.filter_map(|[low, high]| pair(&is_checked, &boxed(low)?, &boxed(high)?));
             let mut expected: Vec<_> = expected.collect();
             expected.sort_unstable();

@@ -10,7 +10,7 @@ use super::curve_text::{CHANNELS, ENCODINGS, WRAPS, repeat};
 use super::image::image;
 use super::image_numbers::Meaning;
 use super::ranges::MAX_LENGTH;
-use crate::scene::text::{Fields, Value, at};
+use crate::scene::text::{Fields, Value, spanned};
 use crate::scene::{NormalPerturbation, PerturbationKind};
 use crate::shape::Coordinates;
 use crate::spectrum::{Encoding, Placement, TexelFilter, Texture, Wrap};
@@ -43,11 +43,11 @@ pub(super) fn relief<'d>(context: &mut Context, object: &mut Fields<'d>) -> Opti
 /// and green.
 fn normal_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<'d>> {
     Fields::read(place, |map| {
-        let file = map.need("image", at(Value::text));
+        let file = map.need("image", spanned(Value::text));
         let placement = placement(map, "directions");
         let strength = map.or("strength", 1.0, |value| {
             let what = format!("the strength of a normal map lies between 0 and {MAX_STRENGTH}");
-            value.within(0.0..=MAX_STRENGTH, &what, None)
+            value.number_within(0.0..=MAX_STRENGTH, &what, None)
         });
         let file = file?;
         let image = image(context, &file, Meaning::Directions, None)?;
@@ -73,12 +73,12 @@ fn normal_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<
 /// it is negative, white is deeper.
 fn bump_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<'d>> {
     Fields::read(place, |map| {
-        let file = map.need("image", at(Value::text));
+        let file = map.need("image", spanned(Value::text));
         let channel = map.maybe("channel", |value| value.word(&CHANNELS));
         let placement = placement(map, "heights");
         let depth = map.need("depth", |value| {
             let what = format!("the depth of a bump map is a length up to {MAX_LENGTH:e}");
-            value.within(-MAX_LENGTH..=MAX_LENGTH, &what, None)
+            value.number_within(-MAX_LENGTH..=MAX_LENGTH, &what, None)
         });
         let image = image(context, &file?, Meaning::Heights, channel?);
         let (image, placement, depth) = (image?, placement?, depth?);

@@ -12,7 +12,7 @@ use super::transform::{compose_steps, steps};
 use crate::material::Material;
 use crate::math::Transform;
 use crate::scene::Visibility;
-use crate::scene::text::{Fields, Spanned, Value, at};
+use crate::scene::text::{Fields, Spanned, Value, spanned};
 use crate::shape::{Mesh, Shape};
 use crate::spectrum::Curve;
 
@@ -62,7 +62,7 @@ pub(super) fn object<'d>(
         let shape = object.need("shape", Some);
         let is_material_inside = shape.is_some_and(|shape| shape.node().get("material").is_some());
         let named = match object.get("material") {
-            Some(value) => at(|value: Value<'d>| names.find(value))(value),
+            Some(value) => spanned(|value: Value<'d>| names.find(value))(value),
             None if is_material_inside => None,
             None if entry.has_many_mistakes() => object.report_missing("material", None),
             None => object.report_missing("material", names.help(name.flatten()).as_deref()),
@@ -70,7 +70,7 @@ pub(super) fn object<'d>(
         let map = object.or(
             "transform",
             Spanned { place: entry, it: Transform::IDENTITY },
-            at(|value| compose_steps(&steps(value)?, Transform::IDENTITY)),
+            spanned(|value| compose_steps(&steps(value)?, Transform::IDENTITY)),
         );
         let instances = object.get("instances");
         let relief = relief(context, object);
@@ -80,7 +80,7 @@ pub(super) fn object<'d>(
             object.refuse_misplaced(kind, format!("`{kind}` is a shape"), format!("write shape.{kind} = {{ .. }}"));
         }
         let name = name?.map_or_else(|| format!("object {}", number + 1), str::to_owned);
-        let shape = shape.and_then(at(|value| {
+        let shape = shape.and_then(spanned(|value| {
             let (read, kind) = SHAPE.of(value)?;
             read(context, &name, kind)
         }));
@@ -136,7 +136,7 @@ fn glass_mesh_warnings(mesh: &Mesh, is_averaged: bool) -> Vec<String> {
 /// Reads what the camera sees of an object.
 fn visibility(object: &mut Fields) -> Option<Visibility> {
     let visible = object.or("visible_to_camera", true, Value::yes_or_no);
-    let mut kind = |key| object.maybe(key, at(Value::yes_or_no)).map(|value| value.filter(|value| value.it));
+    let mut kind = |key| object.maybe(key, spanned(Value::yes_or_no)).map(|value| value.filter(|value| value.it));
     let (holdout, catcher) = (kind("holdout"), kind("shadow_catcher"));
     let both = |key: Spanned<'_, bool>, other: &str| {
         let help = "an object is hidden, or cuts a hole, or shows the shadows on it: keep one of these";
@@ -190,7 +190,7 @@ impl<'m, 'd> Names<'m, 'd> {
 
 /// Reads the transforms of instances, each applied after that of the whole object.
 fn instance_maps(value: Value, first: Transform) -> Option<Vec<Spanned<Transform>>> {
-    let instance_maps = value.list(at(|value| compose_steps(&steps(value)?, first)))?;
+    let instance_maps = value.list(spanned(|value| compose_steps(&steps(value)?, first)))?;
     match instance_maps.is_empty() {
         true => value.refuse("an empty list of instances leaves nothing of the object"),
         false => Some(instance_maps),

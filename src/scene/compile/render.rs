@@ -17,7 +17,7 @@ pub(super) fn render(value: Value) -> Option<RenderText> {
         let model = render.or("model", ModelText::Auto, model);
         let error = render.maybe("error", |value| {
             let help = "0.01 asks for one percent";
-            value.within(RenderText::ERRORS, "a relative error lies between 0.000001 and 1", Some(help))
+            value.number_within(RenderText::ERRORS, "a relative error lies between 0.000001 and 1", Some(help))
         });
         let time = render.maybe("time", |value| {
             let text = value.text()?;
@@ -26,10 +26,10 @@ pub(super) fn render(value: Value) -> Option<RenderText> {
         });
         let meters_per_unit = render.maybe("meters_per_unit", |value| {
             let help = "0.01 if the scene is in centimeters";
-            value.within(1e-12..=1e12, "a scene unit is 1e-12 to 1e12 meters", Some(help))
+            value.number_within(1e-12..=1e12, "a scene unit is 1e-12 to 1e12 meters", Some(help))
         });
-        let samples = render.maybe("samples", |value| value.whole(1..=u32::MAX.into()));
-        let seed = render.or("seed", 0, |value| value.whole(0..=u64::MAX));
+        let samples = render.maybe("samples", |value| value.whole_number(1..=u32::MAX.into()));
+        let seed = render.or("seed", 0, |value| value.whole_number(0..=u64::MAX));
         let diffuse_bounces = render.maybe("diffuse_bounces", Value::count);
         let max_bounces = render.maybe("max_bounces", Value::count);
         let words = [("auto", AutoText::Auto), ("off", AutoText::Off)];

@@ -5,7 +5,7 @@ use super::mesh::mesh;
 use super::ranges::{MAX_LENGTH, MIN_LENGTH, direction, length, point, positive_length};
 use super::shape_text::ShapeText;
 use crate::math::{DVec3, Transform};
-use crate::scene::text::{Choice, Fields, Spanned, Value, at, exactly};
+use crate::scene::text::{Choice, Fields, Spanned, Value, exactly, spanned};
 use crate::shape::{Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};
 
 /// Smallest size relative to the coordinates: several thousand rounding errors.
@@ -77,7 +77,7 @@ fn disc(value: Value) -> Option<Shape> {
         let center = disc.need("center", point);
         let normal = disc.need("normal", direction);
         let radius = disc.need("radius", |value| length(value, "a radius"));
-        let u = disc.maybe("u", at(direction));
+        let u = disc.maybe("u", spanned(direction));
         let (center, normal, radius, u) = (center?, normal?, radius?, u?);
         match Disc::new(center, normal, radius, u.map(|u| u.it)) {
             Some(disc) => Some(Shape::Disc(disc)),
@@ -90,7 +90,7 @@ fn quad(value: Value) -> Option<Shape> {
     Fields::read(value, |quad| {
         let center = quad.need("center", point);
         let u = quad.need("u", direction);
-        let v = quad.need("v", at(direction));
+        let v = quad.need("v", spanned(direction));
         let (center, u, v) = (center?, u?, v?);
         if u.normalize().cross(v.it.normalize()) == DVec3::ZERO {
             return v.place.refuse("a quad's u and v must not be parallel");

@@ -2,7 +2,7 @@
 
 use super::ranges::{direction, in_range, point};
 use crate::math::{DMat3, DVec3, Transform};
-use crate::scene::text::{Choice, Fields, Spanned, Value, at};
+use crate::scene::text::{Choice, Fields, Spanned, Value, spanned};
 
 /// A step: `{ scale = 2 }`, `{ rotate = { axis = [0, 1, 0], degrees = 30 } }`, `{ translate = [0, 1, 0] }`, or
 /// `{ matrix = [[2, 0, 0, 0], [0, 2, 0, 1], [0, 0, 2, 0], [0, 0, 0, 1]] }`, which multiplies column vectors.
@@ -33,7 +33,8 @@ const STEP: Choice<for<'d> fn(Value<'d>) -> Option<Step>> = Choice {
             Fields::read(value, |turn| {
                 let axis = turn.need("axis", direction);
                 let finite = f64::MIN..=f64::MAX;
-                let degrees = turn.need("degrees", |value| value.within(finite, "an angle is a finite number", None));
+                let degrees =
+                    turn.need("degrees", |value| value.number_within(finite, "an angle is a finite number", None));
                 Some(Step::Rotate(Transform::rotate(axis?, degrees?)))
             })
         }),
@@ -64,7 +65,7 @@ fn matrix(value: Value) -> Option<Transform> {
 
 /// Reads a list of steps.
 pub(super) fn steps(value: Value) -> Option<Vec<Spanned<Step>>> {
-    value.list(at(|step| {
+    value.list(spanned(|step| {
         let (read, kind) = STEP.of(step)?;
         read(kind)
     }))

@@ -86,7 +86,7 @@ fn store_block(floats: &mut FloatImage, block: &UncompressedBlock, header: &Head
     let mut put = |x: usize, y: usize, number: usize, value: f32| {
         let [column, row] = [x as i64 + shift[0], y as i64 + shift[1]].map(usize::try_from);
         if let (Ok(column), Ok(row)) = (column, row) {
-            floats.put(column, row, number, value);
+            floats.set(column, row, number, value);
         }
     };
     for line in block.lines(&header.channels) {

@@ -46,7 +46,7 @@ pub(in crate::scene) struct FloatImage {
 
 impl FloatImage {
     /// Sets a number of a texel, if that texel exists.
-    pub(super) fn put(&mut self, x: usize, y: usize, number: usize, value: f32) {
+    pub(super) fn set(&mut self, x: usize, y: usize, number: usize, value: f32) {
         let at = self.channels * (y * self.width + x) + number;
         if x < self.width && at < self.numbers.len() {
             self.numbers[at] = value;

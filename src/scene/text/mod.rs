@@ -30,6 +30,6 @@ pub(super) use settings::set;
 pub(super) use texts::{LocatedBy, Texts};
 pub(super) use tree::parse_toml;
 pub(super) use utf8::utf8;
-pub(super) use value::{Spanned, Value, above_0_to, at, exactly};
+pub(super) use value::{Spanned, Value, above_0_to, exactly, spanned};
 pub(super) use variables::{SET, substitute_variables};
 pub(super) use words::{and_more, six_digits};

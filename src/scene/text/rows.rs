@@ -20,17 +20,17 @@ pub enum Numbers {
 }
 
 /// A prefix that no text written by a person has.
-const MARK: &str = "\0rows ";
+const PREFIX: &str = "\0rows ";
 
 impl Rows {
     /// Returns the text that stands for the rows at a position.
     pub fn mark(position: usize) -> String {
-        format!("{MARK}{position}")
+        format!("{PREFIX}{position}")
     }
 
     /// Returns the position of the rows that a text stands for, if it does.
     pub(super) fn marked_position(text: &str) -> Option<usize> {
-        text.strip_prefix(MARK)?.parse().ok()
+        text.strip_prefix(PREFIX)?.parse().ok()
     }
 
     /// Passes all bytes of the rows to `add`.

@@ -142,7 +142,12 @@ impl<'d> Value<'d> {
     }
 
     /// Reads a number within a range. `rule` says in the message what the number should be.
-    pub(in crate::scene) fn within(self, range: impl RangeBounds<f64>, rule: &str, help: Option<&str>) -> Option<f64> {
+    pub(in crate::scene) fn number_within(
+        self,
+        range: impl RangeBounds<f64>,
+        rule: &str,
+        help: Option<&str>,
+    ) -> Option<f64> {
         match self.number()? {
             number if range.contains(&number) => Some(number),
             number => self.report(format!("{rule}, not {number}"), help.map(str::to_owned)),
@@ -150,7 +155,7 @@ impl<'d> Value<'d> {
     }
 
     /// Reads a whole number within a range. If the range ends where a type does, the message names only its start.
-    pub(in crate::scene) fn whole<T: TryFrom<i128>>(self, range: RangeInclusive<u64>) -> Option<T> {
+    pub(in crate::scene) fn whole_number<T: TryFrom<i128>>(self, range: RangeInclusive<u64>) -> Option<T> {
         let (min, max) = range.into_inner();
         let is_open = max >= u64::from(u32::MAX);
         let expected = match is_open {
@@ -169,7 +174,7 @@ impl<'d> Value<'d> {
     }
 
     pub(in crate::scene) fn count(self) -> Option<u32> {
-        self.whole(0..=u32::MAX.into())
+        self.whole_number(0..=u32::MAX.into())
     }
 
     /// Reads a whole number, which may be negative.
@@ -292,7 +297,7 @@ pub(in crate::scene) struct Spanned<'d, T> {
 }
 
 /// Wraps a reader so that it also returns the place of the value.
-pub(in crate::scene) fn at<'d, T>(
+pub(in crate::scene) fn spanned<'d, T>(
     mut read: impl FnMut(Value<'d>) -> Option<T>,
 ) -> impl FnMut(Value<'d>) -> Option<Spanned<'d, T>> {
     move |place| read(place).map(|it| Spanned { place, it })

@@ -284,7 +284,7 @@ mod tests {
         let geometric: Vec<OuterBox> = (0..4096)
             .map(|i| {
                 let x = libm::pow(1.02, f64::from(i));
-                OuterBox::of(&Bounds { min: DVec3::splat(x), max: DVec3::splat(x * 1.1) })
+                OuterBox::from_bounds(&Bounds { min: DVec3::splat(x), max: DVec3::splat(x * 1.1) })
             })
             .collect();
         let owners = Vec::from_iter(0..4096);

@@ -43,7 +43,7 @@ impl Bvh {
     /// Builds the tree over items that may have several boxes each. Together, the boxes of an item contain all of it.
     pub fn of_parts<const GROUP: usize>(parts: impl Iterator<Item = (u32, Bounds)>) -> Self {
         let (owners, boxes): (Vec<u32>, Vec<OuterBox>) =
-            parts.map(|(item, bounds)| (item, OuterBox::of(&bounds))).unzip();
+            parts.map(|(item, bounds)| (item, OuterBox::from_bounds(&bounds))).unzip();
         let (root, nodes, items) = Builder::build(&boxes, &owners, GROUP);
         Self { root, nodes, items, instructions: Instructions::best() }
     }

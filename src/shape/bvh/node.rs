@@ -25,7 +25,7 @@ pub struct OuterBox {
 impl OuterBox {
     pub const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
 
-    pub fn of(bounds: &Bounds) -> Self {
+    pub fn from_bounds(bounds: &Bounds) -> Self {
         Self { min: bounds.min.to_array().map(round_down), max: bounds.max.to_array().map(round_up) }
     }
 

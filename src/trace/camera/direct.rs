@@ -37,7 +37,7 @@ pub struct DirectLighting<'a, const N: usize, P> {
     /// How bounces from here are aimed, if they are.
     pub aiming: Option<&'a Aiming<'a>>,
     /// Light vertices at which light was already estimated: what they carry no longer counts.
-    pub found_at: Option<&'a LightVertices<N>>,
+    pub vertices: Option<&'a LightVertices<N>>,
 }
 
 /// A side of the surface, from which lights are sampled.
@@ -91,7 +91,8 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
             self.gather_side(&near, sampler, sensor);
         }
         if 1.0 - u <= chance {
-            let far = Side { normal: -near.normal, inside: at.boundary.beyond, parted: parted || at.parts, ..near };
+            let far =
+                Side { normal: -near.normal, inside: at.boundary.beyond, parted: parted || at.is_parting, ..near };
             self.gather_side(&far, sampler, sensor);
         }
         chance
@@ -132,7 +133,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let at = self.lit_surface(side, drawn.light, &sample.ray);
         let (context, wi) = (&at.context, sample.ray.direction);
         let is_found = |vertices: &LightVertices<N>| vertices.carry(self.world, drawn.light, &sample.ray);
-        if wi.dot(normal) <= 0.0 || self.found_at.is_some_and(is_found) {
+        if wi.dot(normal) <= 0.0 || self.vertices.is_some_and(is_found) {
             return None;
         }
         let flat = if normal.dot(context.wo) < 0.0 { -normal } else { normal };
@@ -168,8 +169,8 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let toward = || self.path.polarization.toward_light(at, wi, &mut bsdf_cos);
         let arriving = segment.arriving_light(world, context.draw, toward, light_of);
         let Some((mut arriving, on_its_way)) = arriving else { return };
-        let lit = on_its_way.at_polarized_light(&world.scene.lights[*light], wi, &mut arriving);
-        let on_its_way = lit.as_ref().unwrap_or(&on_its_way);
+        let polarized = on_its_way.at_polarized_light(&world.scene.lights[*light], wi, &mut arriving);
+        let on_its_way = polarized.as_ref().unwrap_or(&on_its_way);
         // The density of aimed bounces takes time, so it is computed only for rays that are not occluded.
         let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
             Some(aiming) => self.factor(sample, *probability, aiming.pdf(wi, *bsdf_pdf)),

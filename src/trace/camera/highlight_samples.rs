@@ -26,11 +26,11 @@ pub fn add_aimed<const N: usize, P: Polarization<N>>(
         let counted = Counted::aimed(world.scene.film.filter, film, offset, highlight.light(), highlights);
         if let Some(counted) = counted {
             let path = Path::from_camera(world, draw, world.scene.camera.ray(film));
-            tracer.sensor.count(counted);
+            tracer.sensor.set_counted(counted);
             tracer.trace(&path, draw, sampler);
         }
     }
-    tracer.sensor.count(Counted::ALL);
+    tracer.sensor.set_counted(Counted::ALL);
     tracer.walker.stats.count_once(&before);
     tracer.walker.audit = audit;
 }

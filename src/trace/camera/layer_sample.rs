@@ -40,7 +40,7 @@ pub struct SampleRow<'a> {
 
 impl<'a, const N: usize> LayerSample<'a, N> {
     /// Returns `None` if no layers are requested.
-    pub fn of(world: &'a World) -> Option<Self> {
+    pub fn new(world: &'a World) -> Option<Self> {
         let Layers { row_len, .. } = world.layers;
         let (row, spectrum) = (vec![0.0; row_len], world.layers.spectrum.as_ref().map(SpectrumSample::new));
         let (share, chance, object, branches) = (0.0, 1.0, None, Vec::new());
@@ -68,7 +68,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     /// Stores the object that the camera ray hit, `None` if it went through a hole of one, and its share of the weight.
-    pub fn choose(&mut self, hit_object: Option<u32>, chance: f64) {
+    pub fn set_object(&mut self, hit_object: Option<u32>, chance: f64) {
         if self.is_aimed {
             return;
         }
@@ -130,14 +130,14 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     /// Keeps what the current sample contributes to the bands of a spectral image, to be added or subtracted.
-    pub fn keep(&mut self, is_subtracted: bool) {
+    pub fn keep_spectrum(&mut self, is_subtracted: bool) {
         self.spectrum.iter_mut().for_each(|spectrum| spectrum.keep(is_subtracted));
     }
 
     /// Adds all spectra that were kept to a pixel's rows. The second row is for samples that are subtracted.
-    pub fn hand_over(&mut self, rows: [&mut [f64]; 2]) {
+    pub fn add_spectra_to(&mut self, rows: [&mut [f64]; 2]) {
         if let Some(spectrum) = &mut self.spectrum {
-            spectrum.hand_over(rows);
+            spectrum.add_sums_to(rows);
         }
     }
 
@@ -207,7 +207,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
                 Some(crossing) if branch.crosses => branch.share * crossing,
                 _ => branch.share,
             };
-            let parted = path.parted || (at.parts && branch.crosses);
+            let parted = path.parted || (at.is_parting && branch.crosses);
             let rgb = white.times(draw, path.throughput.of(share), parted);
             let scale = path.eta_scale * branch.eta_scale;
             (0..3).for_each(|channel| albedo[channel] += rgb[channel] / scale);

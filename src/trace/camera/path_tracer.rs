@@ -64,7 +64,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// Adds the layers that the world requests.
     pub fn with_layers(mut self) -> Self {
         let world = self.walker.world;
-        self.sensor.layers = LayerSample::of(world);
+        self.sensor.layers = LayerSample::new(world);
         self.walker.audit = world.layers.offset(Layer::Residual).map(|_| Audit::new(world));
         self
     }
@@ -137,7 +137,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             through = through.filter(|through| !through.straight.holes.is_zero());
         }
         let samples_cutout = world.has_mattes && path.surfaces() == 0 && first.is_none();
-        let chance = if samples_cutout { self.choose(path, draw, sampler, &mut through) } else { 1.0 };
+        let chance = if samples_cutout { self.sample_pass_through(path, draw, sampler, &mut through) } else { 1.0 };
         let SurfaceHit { hit, point } = &surface_hit;
         if let Some(PassThrough { straight, polarization }) = through
             && path.throughput.through(straight.share()) == path.throughput
@@ -151,7 +151,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             return self.walker.pass_partly(path, point, through.as_ref());
         }
         let is_first = path.surfaces() == 1 && first.is_none();
-        let met = is_first.then(|| self.first_hit(path, draw, sampler, &surface_hit, through.as_ref(), first));
+        let met = is_first.then(|| self.sample_first_hit(path, draw, sampler, &surface_hit, through.as_ref(), first));
         self.receive(path, draw, EmitterHit::of_surface(world, draw, path, &surface_hit));
         let surface = Surface { surface_hit: &surface_hit, boundary, through: through.as_ref(), first: met, chance };
         if path.surfaces() > world.method.max_bounces {
@@ -164,7 +164,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     }
 
     /// Decides what the camera ray hits: a surface, which becomes `first`, or what is behind its holes.
-    fn first_hit(
+    fn sample_first_hit(
         &mut self,
         path: &Path<N, P>,
         draw: &Draw<N>,
@@ -176,7 +176,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let pass_through::Cutout { is_hit, weight, .. } =
             pass_through::sample_cutout(self.walker.world, draw, sampler, path, through);
         if let Some(layers) = &mut self.sensor.layers {
-            layers.choose(is_hit.then_some(surface_hit.hit.object), weight);
+            layers.set_object(is_hit.then_some(surface_hit.hit.object), weight);
         }
         *first = is_hit.then_some(surface_hit.point);
         if is_hit { FirstHit::Here } else { FirstHit::Beyond }
@@ -186,7 +186,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// holdout hides all that a sample shows, and a shadow catcher takes all of it. Returns the factor by which the
     /// throughput of a path was divided that continues from the surface.
     #[cold]
-    fn choose(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, through: &mut Through<N, P>) -> f64 {
+    fn sample_pass_through(
+        &mut self,
+        path: &mut Path<N, P>,
+        draw: &Draw<N>,
+        sampler: &Sampler,
+        through: &mut Through<N, P>,
+    ) -> f64 {
         let Method { transport, polarization, .. } = &self.walker.world.method;
         let is_by_chance = matches!(transport, Transport::Random { .. });
         // Beyond holes and panes together, light has the mean polarization of both.
@@ -300,8 +306,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             return 1.0;
         };
         let all = must_pass || self.walker.follows_all(path, at.context.draw);
-        let seen = self.excitation(path);
-        let excited = DyeExcitation { world, dyes, path, at, follows_all: all, excitation: seen.as_deref() }
+        let excitation = self.excitation(path);
+        let excited = DyeExcitation { world, dyes, path, at, follows_all: all, excitation: excitation.as_deref() }
             .sample_paths(sampler);
         for (excited_path, excitation) in excited.paths {
             let excitation = Rc::new(excitation);
@@ -333,9 +339,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let last_occluder = &self.walker.last_occluder;
             let (aiming, excitation) = (aiming.as_ref(), self.excitation(path));
             let excitation = excitation.as_deref();
-            let found_at = self.found_at(path);
+            let vertices = self.vertices_at(path);
             let lighting =
-                DirectLighting { world, path, at, excitation, goes_on, all_lights, last_occluder, u, aiming, found_at };
+                DirectLighting { world, path, at, excitation, goes_on, all_lights, last_occluder, u, aiming, vertices };
             let chance = lighting.gather(sampler, &mut self.sensor);
             if gathers && goes_on && path.kind != PathKind::Camera && !path.leaves_all_to_photons(world, at) {
                 self.gather_photons(path, at, sampler);
@@ -422,7 +428,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             if let Some(half_blur) = &photons.half_blur {
                 self.sensor.add_blur(gathered.all.rgb, gather_with(half_blur, false).all.rgb);
             }
-            let draw = excitation.map_or(at.context.draw, |dye| &dye.seen_by);
+            let draw = excitation.map_or(at.context.draw, |dye| &dye.sensor_draw);
             self.sensor.receive_gathered(&gathered, draw);
         }
         if let Some(observer) = self.sensor.observer.filter(|_| !self.sensor.counted.is_aimed()) {
@@ -435,11 +441,11 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let world = self.walker.world;
         let is_left_to_photons = path.left_to_photons && path.object_set == ObjectSet::All;
         (is_left_to_photons && world.is_found_by_photons(light, &path.ray))
-            || self.found_at(path).is_some_and(|at| at.carry(world, light, &path.ray))
+            || self.vertices_at(path).is_some_and(|vertices| vertices.carry(world, light, &path.ray))
     }
 
     /// Returns the light vertices whose light was already estimated, and no longer counts on the path.
-    fn found_at(&self, path: &Path<N, P>) -> Option<&'a LightVertices<N>> {
+    fn vertices_at(&self, path: &Path<N, P>) -> Option<&'a LightVertices<N>> {
         self.light_vertices.filter(|_| path.resampled)
     }
 }

@@ -65,7 +65,7 @@ impl<'a, const N: usize> Sensor<'a, N> {
     }
 
     /// Decides which light of the next paths counts.
-    pub fn count(&mut self, counted: Counted<'a>) {
+    pub fn set_counted(&mut self, counted: Counted<'a>) {
         self.counted = counted;
         self.layers.iter_mut().for_each(|layers| layers.is_aimed = counted.is_aimed());
     }

@@ -19,7 +19,7 @@ const MAX_PAIR_RAYS: usize = 1024;
 /// Maximum number of lights that send rays: the brightest at a target.
 const MAX_LIGHTS: usize = 16;
 /// Colors that are apart by less than this share of the lamp's own blur look white.
-const CONTRAST: f64 = 0.05;
+const MIN_CONTRAST: f64 = 0.05;
 /// Light through an object is not seen if it is fainter than this share of the lamp's own: a color may be off by as
 /// much.
 const MIN_SHARE: f64 = 0.01;
@@ -111,7 +111,12 @@ impl Pair<'_> {
         if self.choice == FollowedBranch::FainterInside && first.fork_inside == 0.0 {
             return None;
         }
-        if !first.dispersive || !first.diffuse || !second.diffuse || first.met != second.met || first.weight == 0.0 {
+        if !first.dispersive
+            || !first.diffuse
+            || !second.diffuse
+            || first.crossed_objects != second.crossed_objects
+            || first.weight == 0.0
+        {
             return None;
         }
         let (a, b) = (first.end?.0, second.end?.0);
@@ -132,11 +137,11 @@ impl Pair<'_> {
         let blur = [DVec3::X, DVec3::Y].map(|side| {
             let direction = unit(start.direction + frame.to_world(side) * turn);
             let turned = walk(0, Ray { origin: target - direction * far, direction });
-            let matching_end = turned.end.filter(|_| turned.met == first.met);
+            let matching_end = turned.end.filter(|_| turned.crossed_objects == first.crossed_objects);
             matching_end.map_or(0.0, |end| scale * (end.0.position - a.position).length() * radius / turn)
         });
         let blur = f64::max(blur[0], blur[1]);
-        Some(if separation >= CONTRAST * blur { separation } else { 0.0 })
+        Some(if separation >= MIN_CONTRAST * blur { separation } else { 0.0 })
     }
 
     /// Returns the irradiance along a ray's way, relative to the lamp's own where it lands, by the areas that the ray's
@@ -158,7 +163,8 @@ impl Pair<'_> {
             (sample.ray.direction, sample.distance, sample.object)
         };
         let (own, from) = (direction.dot(end.normal), -first.last()?.direction.dot(end.normal));
-        let blocks = |object| !first.met.contains(&object) && !scene.material_of(object).lobes().is_transmissive();
+        let blocks =
+            |object| !first.crossed_objects.contains(&object) && !scene.material_of(object).lobes().is_transmissive();
         let ray = end.leave(direction);
         if own * from <= 0.0 || scene.is_occluded_by(&ray, distance, lamp, &Cell::new(None), &blocks) {
             return None;
@@ -172,7 +178,9 @@ impl Pair<'_> {
                 Ray { direction: unit(target + offset - start.origin), ..*start }
             };
             let walk = walk(0, neighbor);
-            walk.end.filter(|_| walk.met == first.met).map(|neighbor| neighbor.0.position - end.position)
+            walk.end
+                .filter(|_| walk.crossed_objects == first.crossed_objects)
+                .map(|neighbor| neighbor.0.position - end.position)
         });
         let nearer = if light.is_infinite() { 1.0 } else { (target - start.origin).length() / distance };
         Some(first.weight * step * step / (x?.cross(y?).length() * own.abs() * nearer * nearer))
@@ -202,8 +210,8 @@ impl Pair<'_> {
             }
             light if light.is_infinite() => {
                 let world = ball_around_all(scene)?;
-                let out = (world.center - back.origin).length() + 2.0 * world.radius;
-                let start = Ray { origin: back.at(out), ..*back };
+                let distance_outside = (world.center - back.origin).length() + 2.0 * world.radius;
+                let start = Ray { origin: back.at(distance_outside), ..*back };
                 let hidden = scene.is_occluded(&start, f64::INFINITY, None, &Cell::new(None));
                 (!hidden).then_some(Ray { direction: -back.direction, ..start })
             }
@@ -214,26 +222,26 @@ impl Pair<'_> {
     /// Returns the pixels per length where a ray lands, if the camera sees it: directly, through clear objects, or
     /// indirectly.
     fn pixel_scale(&self, point: &SurfacePoint, walk: &ColorWalk) -> Option<f64> {
-        let left = self.colors.world.method.max_bounces - walk.surfaces;
+        let remaining_bounces = self.colors.world.method.max_bounces - walk.surfaces;
         let is_near = |place: &&ReachedPlace| (place.position - point.position).length() <= place.cell_size;
-        let is_indirect = |place: &&ReachedPlace| place.surfaces < left && is_near(place);
+        let is_indirect = |place: &&ReachedPlace| place.surfaces < remaining_bounces && is_near(place);
         let straight = self.direct_pixel_scale(point, walk);
         straight.or_else(|| self.reached.iter().find(is_indirect).map(|place| 1.0 / place.pixel_size))
     }
 
     fn direct_pixel_scale(&self, point: &SurfacePoint, walk: &ColorWalk) -> Option<f64> {
         let (scene, film) = (&self.colors.world.scene, self.colors.world.scene.film);
-        let seen = scene.camera.see(point.position, [0.5; 2])?;
+        let projection = scene.camera.see(point.position, [0.5; 2])?;
         let size = DVec2::new(f64::from(film.width), f64::from(film.height));
-        let inside = seen.film.cmpge(DVec2::ZERO).all() && seen.film.cmple(size).all();
-        let lit = -walk.last()?.direction.dot(point.normal);
-        if !inside || lit * seen.direction.dot(point.normal) <= 0.0 {
+        let inside = projection.film.cmpge(DVec2::ZERO).all() && projection.film.cmple(size).all();
+        let cos_lit = -walk.last()?.direction.dot(point.normal);
+        if !inside || cos_lit * projection.direction.dot(point.normal) <= 0.0 {
             return None;
         }
-        let ray = point.leave(seen.direction);
-        let distance = (seen.start - ray.origin).length();
+        let ray = point.leave(projection.direction);
+        let distance = (projection.start - ray.origin).length();
         let hides = |object| !scene.material_of(object).lobes().is_transmissive();
         let hidden = scene.is_occluded_by(&ray, distance, None, &Cell::new(None), &hides);
-        (!hidden).then(|| (seen.importance * seen.direction.dot(point.normal).abs()).sqrt())
+        (!hidden).then(|| (projection.importance * projection.direction.dot(point.normal).abs()).sqrt())
     }
 }

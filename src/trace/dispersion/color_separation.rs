@@ -11,7 +11,7 @@ use crate::trace::World;
 /// are as far apart as two colors that are just not seen apart.
 const NEIGHBOR_STEPS: [f64; 2] = [0.5 * SEEN_PIXELS, 0.1 * SEEN_PIXELS];
 /// Number of places along each side of a pixel whose light is examined.
-const PLACES: u32 = 6;
+const PLACES_PER_SIDE: u32 = 6;
 
 /// Returns how many pixels apart two colors show what lies behind; `None` if an edge is too close to tell.
 pub fn color_separation(rays: &CameraRays, at: DVec2, first: &ColorWalk) -> Option<f64> {
@@ -22,9 +22,9 @@ pub fn color_separation(rays: &CameraRays, at: DVec2, first: &ColorWalk) -> Opti
 
 /// Returns the share of a pixel's light that dispersion pulls apart. Facets far smaller than a pixel count by area.
 pub fn separated_share(rays: &CameraRays, middle: DVec2) -> f64 {
-    let place = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES) - 0.5;
+    let place = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES_PER_SIDE) - 0.5;
     let share = |i: u32| {
-        let at = middle + DVec2::new(place(i % PLACES), place(i / PLACES));
+        let at = middle + DVec2::new(place(i % PLACES_PER_SIDE), place(i / PLACES_PER_SIDE));
         let walks = [0, 1].map(|lane| rays.walk(at, lane));
         let [first, second] = &walks;
         let is_separated = || {
@@ -34,15 +34,15 @@ pub fn separated_share(rays: &CameraRays, middle: DVec2) -> f64 {
         };
         if first.dispersive && is_separated() { first.weight } else { 0.0 }
     };
-    (0..PLACES * PLACES).map(share).sum::<f64>() / f64::from(PLACES * PLACES)
+    (0..PLACES_PER_SIDE * PLACES_PER_SIDE).map(share).sum::<f64>() / f64::from(PLACES_PER_SIDE * PLACES_PER_SIDE)
 }
 
 /// Returns whether no walk is lost, and what they show may differ.
 fn may_differ(rays: &CameraRays, walks: [&ColorWalk; 2]) -> bool {
     let lost = walks.iter().any(|walk| walk.weight == 0.0);
-    let out = walks.iter().all(|walk| walk.leaves_scene());
+    let all_leave = walks.iter().all(|walk| walk.leaves_scene());
     // If skies are uniform, all walks that leave the scene see the same.
-    !(lost || out && skies_seen(rays.colors.world).all(Light::is_even_sky))
+    !(lost || all_leave && skies_seen(rays.colors.world).all(Light::is_even_sky))
 }
 
 /// Returns how many pixels apart two colors show what lies behind.

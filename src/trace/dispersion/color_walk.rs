@@ -14,7 +14,7 @@ const MAX_SURFACES: usize = 64;
 /// Share of the light above which a fainter branch counts: half of what glass mirrors.
 const MIN_SHARE: f64 = 0.02;
 /// Rough reflectance of a glossy surface.
-const GLOSS: f64 = 0.05;
+const ROUGH_REFLECTANCE: f64 = 0.05;
 /// Use of the random numbers at a surface.
 const SURFACE: u32 = 7;
 
@@ -34,7 +34,7 @@ pub struct ColorWalk {
     /// Its straight segments: where each starts, and how long it is; infinite if it leaves the scene.
     pub legs: Vec<(Ray, f64)>,
     /// The objects that it met before its end.
-    pub met: Vec<u32>,
+    pub crossed_objects: Vec<u32>,
     /// Number of surfaces that deflected it, or let it enter or leave a body: `max_bounces` limits it.
     pub surfaces: u32,
     /// The surface at which it ends, and its object; `None` if it leaves the scene or is lost.
@@ -133,7 +133,7 @@ impl Colors<'_> {
         choice: FollowedBranch,
     ) -> ColorWalk {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
-        let mut walk = ColorWalk { legs, met, weight: 1.0, media, ..ColorWalk::default() };
+        let mut walk = ColorWalk { legs, crossed_objects: met, weight: 1.0, media, ..ColorWalk::default() };
         let mut key = BranchKey::CAMERA;
         for _ in 0..MAX_SURFACES {
             let hit = match is_from_camera {
@@ -160,7 +160,7 @@ impl Colors<'_> {
                 }
                 Next::Lost => break,
             }
-            walk.met.push(met.object);
+            walk.crossed_objects.push(met.object);
         }
         walk.weight = 0.0;
         walk
@@ -168,7 +168,7 @@ impl Colors<'_> {
 
     /// Returns how a walk continues at a surface. Beyond the bounce limit, surfaces show only their own light.
     fn next(&self, walk: &mut ColorWalk, at: &WalkSurface) -> Next {
-        let next = self.beyond(walk, at);
+        let next = self.continuation(walk, at);
         if !matches!(next, Next::Toward(_) | Next::End) {
             return next;
         }
@@ -181,7 +181,7 @@ impl Colors<'_> {
     }
 
     /// Returns how a walk continues at a surface, whatever the bounce limit.
-    fn beyond(&self, walk: &mut ColorWalk, at: &WalkSurface) -> Next {
+    fn continuation(&self, walk: &mut ColorWalk, at: &WalkSurface) -> Next {
         let WalkSurface { ray, surface_hit, u, choice, .. } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(&surface_hit.point, wo);
@@ -212,7 +212,7 @@ impl Colors<'_> {
                 // Both colors use the same facet, as if there were no others.
                 Some(surface) => mirrored(surface, wo, normal, [u[2], u[3]]).map_or(Next::Lost, Next::Toward),
             },
-            material if material.lobes().has_delta() && walk.choose_branch(GLOSS, false, choice) => {
+            material if material.lobes().has_delta() && walk.choose_branch(ROUGH_REFLECTANCE, false, choice) => {
                 Next::Toward(reflect(wo, normal))
             }
             material => {

@@ -23,13 +23,13 @@ pub struct RouteWalker<'a> {
     draw: Draw<4>,
     sampler: Sampler,
     pending: Vec<RouteWalk>,
-    pub found: Vec<Route>,
+    pub routes: Vec<Route>,
 }
 
 impl<'a> RouteWalker<'a> {
     pub fn new(world: &'a World, sampler: Sampler) -> Self {
         let draw = Draw::fixed(ROUTES_NM.len());
-        Self { world, draw, sampler, pending: Vec::new(), found: Vec::new() }
+        Self { world, draw, sampler, pending: Vec::new(), routes: Vec::new() }
     }
 
     /// Follows the routes of a camera ray, and returns the number of surfaces hit.
@@ -44,9 +44,9 @@ impl<'a> RouteWalker<'a> {
             if walk.max_throughput() <= MIN_SHARE * best {
                 return count;
             }
-            let (found_before, left) = (self.found.len(), walk.max_throughput());
+            let (found_before, left) = (self.routes.len(), walk.max_throughput());
             self.advance(walk);
-            if self.found.len() > found_before {
+            if self.routes.len() > found_before {
                 best = best.max(left);
             }
         }
@@ -55,7 +55,7 @@ impl<'a> RouteWalker<'a> {
 
     fn record(&mut self, walk: &RouteWalk, light: LightId) {
         let RouteWalk { steps, weight, scattered, .. } = walk;
-        self.found.push(Route { steps: steps.clone(), light, weight: *weight, scattered: *scattered });
+        self.routes.push(Route { steps: steps.clone(), light, weight: *weight, scattered: *scattered });
     }
 
     /// Follows a route to the next surface, and finds how it continues.
@@ -116,15 +116,15 @@ impl<'a> RouteWalker<'a> {
                 let inside = media::index(&world.scene, &self.draw, walk.media.inside(&world.scene));
                 let r = pane.reflectance_of_one_surface(&self.draw, 1, inside[1], at.wo().dot(normal));
                 let tint = pane.transmittance().map_or(Lanes::ONE, |table| self.draw.read_at(table, uv));
-                let through = (1.0 - r) * (1.0 - r);
+                let transmitted = (1.0 - r) * (1.0 - r);
                 let crossed = at.step(RouteEvent::Crossed);
-                let straight = walk.after(Some(crossed), tint, through);
+                let straight = walk.after(Some(crossed), tint, transmitted);
                 self.continue_straight(at, straight);
                 // Mirrored by the first surface, and by the second.
-                let back = reflect(at.wo(), normal);
-                self.continue_toward(at, walk.after(None, Lanes::ONE, r), back, 1);
-                let behind = walk.after(Some(crossed), tint, r * through).after(Some(crossed), tint, 1.0);
-                self.continue_toward(at, behind, back, 2);
+                let mirrored_direction = reflect(at.wo(), normal);
+                self.continue_toward(at, walk.after(None, Lanes::ONE, r), mirrored_direction, 1);
+                let mirrored_by_back = walk.after(Some(crossed), tint, r * transmitted).after(Some(crossed), tint, 1.0);
+                self.continue_toward(at, mirrored_by_back, mirrored_direction, 2);
             }
             Material::Dielectric(glass) => self.follow_glass(
                 at,
@@ -258,14 +258,15 @@ impl<'a> RouteWalker<'a> {
         let (world, light) = (self.world, &self.world.scene.lights[id]);
         let Some(sample) = light.sample_li(at.point, normal, [at.u[1], at.u[0]]) else { return };
         let mut walk = RouteWalk { ray: sample.ray, ..walk.clone() };
-        let mut left = sample.distance;
+        let mut remaining_distance = sample.distance;
         for _ in 0..MAX_SURFACES {
-            let Some(hit) = world.scene.nearest(&walk.ray, left, &|object| sample.object != Some(object)) else {
-                let walk = self.inside(walk, left);
+            let Some(hit) = world.scene.nearest(&walk.ray, remaining_distance, &|object| sample.object != Some(object))
+            else {
+                let walk = self.inside(walk, remaining_distance);
                 return self.record(&walk, id);
             };
             walk = self.inside(walk, hit.intersection.t);
-            left -= hit.intersection.t;
+            remaining_distance -= hit.intersection.t;
             let object = &world.scene.objects[hit.object as usize];
             let surface_hit = SurfaceHit::new(world, &walk.ray, hit);
             let point = &surface_hit.point;

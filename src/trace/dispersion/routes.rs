@@ -8,7 +8,7 @@ use crate::trace::World;
 use crate::trace::probe::pixels_of_objects;
 
 /// Number of pixels along each side of the image.
-const SIDE: u32 = 24;
+const PIXELS_PER_SIDE: u32 = 24;
 /// Number of surfaces after which no more pixels are traced, over the image and again on objects.
 const MAX_SURFACES: usize = 16_384;
 
@@ -16,14 +16,14 @@ const MAX_SURFACES: usize = 16_384;
 /// [`ROUTES_NM`](super::route::ROUTES_NM).
 pub fn routes(world: &World) -> Vec<Vec<Route>> {
     let film = world.scene.film.whole();
-    let grid = film.middles_of_cells(SIDE);
+    let grid = film.middles_of_cells(PIXELS_PER_SIDE);
     let objects = pixels_of_objects(world, Lobes::has_delta);
     let routes_of_pixel = |(number, [x, y]): (u32, [i32; 2])| {
         let ray = world.scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
         let sampler = Sampler::of_pixel(world.method.seed, [x, y], number);
         let mut walker = RouteWalker::new(world, sampler);
         let surfaces = walker.walk(ray);
-        (surfaces, walker.found)
+        (surfaces, walker.routes)
     };
     let until_enough = |surfaces: &mut usize, (more, found): (usize, Vec<Route>)| {
         let before = *surfaces;
@@ -31,6 +31,6 @@ pub fn routes(world: &World) -> Vec<Vec<Route>> {
         (before < MAX_SURFACES).then_some(found)
     };
     let mut routes: Vec<Vec<Route>> = (0..).zip(grid).map(routes_of_pixel).scan(0, until_enough).collect();
-    routes.extend((SIDE * SIDE..).zip(objects).map(routes_of_pixel).scan(0, until_enough));
+    routes.extend((PIXELS_PER_SIDE * PIXELS_PER_SIDE..).zip(objects).map(routes_of_pixel).scan(0, until_enough));
     routes
 }

@@ -11,7 +11,7 @@ use super::targets::{SEEN_PIXELS, Targets};
 use crate::math::{DVec2, DVec3, Sampler};
 
 /// Number of cells along each side of the view.
-const SIDE: u32 = 24;
+const CELLS_PER_SIDE: u32 = 24;
 /// Maximum number of cells that are examined after the initial ones.
 const MAX_CELLS: usize = 6000;
 /// Cells of this size or less, in pixels, are not divided.
@@ -39,7 +39,7 @@ pub struct ReachedPlace {
 /// The result of a search.
 pub struct SearchResult {
     /// Share of the view on dispersive surfaces.
-    pub seen: f64,
+    pub dispersive_share: f64,
     /// How many pixels apart colors are, on an area of [`MIN_AREA_PIXELS`] or more.
     pub pixels: f64,
     /// Whether no ray that hit a dispersive surface saw anything.
@@ -76,10 +76,10 @@ pub fn search(colors: &Colors, targets: &Targets) -> SearchResult {
     let film = colors.world.scene.film;
     let all = f64::from(film.width) * f64::from(film.height);
     let min_area = MIN_AREA_PIXELS.min(MIN_AREA_SHARE * all);
-    let size = DVec2::new(f64::from(film.width), f64::from(film.height)) / f64::from(SIDE);
-    let corner = |i: u32| DVec2::new(f64::from(i % SIDE), f64::from(i / SIDE)) * size;
+    let size = DVec2::new(f64::from(film.width), f64::from(film.height)) / f64::from(CELLS_PER_SIDE);
+    let corner = |i: u32| DVec2::new(f64::from(i % CELLS_PER_SIDE), f64::from(i / CELLS_PER_SIDE)) * size;
     let cell = |i: u32| ViewCell { corner: corner(i), size, choice: FollowedBranch::Brighter, count: 1.0 };
-    let mut cells: Vec<ViewCell> = (0..SIDE * SIDE).map(cell).collect();
+    let mut cells: Vec<ViewCell> = (0..CELLS_PER_SIDE * CELLS_PER_SIDE).map(cell).collect();
     let (mut settled, mut reached, mut budget) = (Vec::new(), Vec::new(), MAX_CELLS);
     loop {
         let mut forks = Vec::new();
@@ -111,7 +111,12 @@ pub fn search(colors: &Colors, targets: &Targets) -> SearchResult {
     let seen: f64 =
         settled.iter().filter(|look| look.cell.choice == FollowedBranch::Brighter).map(|look| look.dispersive).sum();
     let dark = seen > 0.0 && settled.iter().all(|look| look.dark || look.dispersive == 0.0);
-    SearchResult { seen: (seen / all).min(1.0), pixels: visible_separation(settled.iter(), min_area), dark, reached }
+    SearchResult {
+        dispersive_share: (seen / all).min(1.0),
+        pixels: visible_separation(settled.iter(), min_area),
+        dark,
+        reached,
+    }
 }
 
 fn look(
@@ -167,8 +172,9 @@ fn look_closer(colors: &Colors, looks: &mut [Look]) {
 /// Returns the place where the first of a cell's walks ends, if that is on a diffuse surface seen by way of others.
 fn place(walks: &[ColorWalk; 5], size: DVec2) -> Option<ReachedPlace> {
     let diffuse_end = |walk: &ColorWalk| walk.end.filter(|_| walk.diffuse).map(|end| end.0.position);
-    let position = diffuse_end(&walks[0]).filter(|_| !walks[0].met.is_empty())?;
-    let neighbors = walks[1..].iter().filter(|walk| walk.met == walks[0].met).filter_map(diffuse_end);
+    let position = diffuse_end(&walks[0]).filter(|_| !walks[0].crossed_objects.is_empty())?;
+    let neighbors =
+        walks[1..].iter().filter(|walk| walk.crossed_objects == walks[0].crossed_objects).filter_map(diffuse_end);
     let cell_size = neighbors.map(|other| (other - position).length()).fold(0.0, f64::max);
     let (pixel_size, surfaces) = (cell_size / (0.5 * size.length()), walks[0].surfaces);
     (cell_size > 0.0).then_some(ReachedPlace { position, pixel_size, cell_size, surfaces })
@@ -186,7 +192,7 @@ impl ViewCell {
     }
 
     fn is_undivided(&self, colors: &Colors) -> bool {
-        self.size.x * f64::from(SIDE) >= f64::from(colors.world.scene.film.width)
+        self.size.x * f64::from(CELLS_PER_SIDE) >= f64::from(colors.world.scene.film.width)
     }
 
     /// Returns its halves along each side that can be divided.

@@ -36,5 +36,5 @@ pub fn dispersion(world: &World) -> Dispersion {
     let targets = Targets::new(&colors);
     let found = search(&colors, &targets);
     let lit_pixels = lit_pixels(&colors, &targets, &found.reached);
-    Dispersion { seen: found.seen, seen_pixels: found.pixels, lit_pixels, dark: found.dark }
+    Dispersion { seen: found.dispersive_share, seen_pixels: found.pixels, lit_pixels, dark: found.dark }
 }

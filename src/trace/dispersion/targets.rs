@@ -60,7 +60,7 @@ impl Targets {
     /// goes its own way, only the width of a beam that nothing has bent is known: `width` is its angle.
     pub fn touched(&self, walks: &[ColorWalk], width: f64) -> Option<usize> {
         let has_hit = |walk: &ColorWalk, target: usize| {
-            walk.met
+            walk.crossed_objects
                 .iter()
                 .chain(walk.end.iter().map(|end| &end.1))
                 .any(|&object| self.target_of_object[object as usize] == Some(target))
@@ -91,7 +91,7 @@ fn beams(walks: &[ColorWalk], width: f64) -> Vec<Beam> {
     for leg in 0..longest {
         let on_leg: Vec<&ColorWalk> = walks.iter().filter(|walk| walk.legs.len() > leg).collect();
         for (number, walk) in on_leg.iter().enumerate() {
-            let shares_beam = |other: &&&ColorWalk| other.met[..leg] == walk.met[..leg];
+            let shares_beam = |other: &&&ColorWalk| other.crossed_objects[..leg] == walk.crossed_objects[..leg];
             if on_leg[..number].iter().any(|other| shares_beam(&other)) {
                 continue;
             }

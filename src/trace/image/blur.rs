@@ -28,9 +28,9 @@ pub fn squared_blur(Products(products): &Products, student: f64) -> [f64; 2] {
     let with_others: [f64; REPLICATES] = std::array::from_fn(|i| products[i].iter().sum::<f64>() - products[i][i]);
     let all = with_others.iter().sum::<f64>();
     let expected = (all / (count * (count - 1.0))).max(0.0);
-    let without = with_others.map(|own| (all - 2.0 * own) / ((count - 1.0) * (count - 2.0)));
-    let mean = without.iter().sum::<f64>() / count;
-    let spread = without.iter().map(|square| (square - mean) * (square - mean)).sum::<f64>();
+    let others_mean = with_others.map(|own| (all - 2.0 * own) / ((count - 1.0) * (count - 2.0)));
+    let mean = others_mean.iter().sum::<f64>() / count;
+    let spread = others_mean.iter().map(|square| (square - mean) * (square - mean)).sum::<f64>();
     let variance = spread * (count - 1.0) / count;
     [expected, FOLD_RATIO * (expected + student * variance.sqrt())]
 }

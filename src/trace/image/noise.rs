@@ -108,7 +108,7 @@ const GRUBBS_SHARE: f64 = 0.6457;
 const MAX_UNSEEN: f64 = 4.743_864_518;
 
 /// The 95 % quantile of the normal distribution.
-const NORMAL: f64 = 1.644_853_627;
+const NORMAL_QUANTILE: f64 = 1.644_853_627;
 
 /// Returns about the 95 % quantile of the F distribution with 1 or more degrees of freedom of both squares, the second
 /// 7 or more: too low by at most 2 %. Both cube roots are about normal.
@@ -116,8 +116,8 @@ const NORMAL: f64 = 1.644_853_627;
 /// Paulson 1942, *An Approximate Normalization of the Analysis of Variance Distribution*, equation 5.
 fn f_quantile(first: f64, second: f64) -> f64 {
     let [a, b] = [first, second].map(|freedom| 2.0 / (9.0 * freedom));
-    let squared = NORMAL * NORMAL;
-    // The cube root x solves (1 - b) x - (1 - a) = NORMAL sqrt(b x^2 + a).
+    let squared = NORMAL_QUANTILE * NORMAL_QUANTILE;
+    // The cube root x solves (1 - b) x - (1 - a) = NORMAL_QUANTILE sqrt(b x^2 + a).
     let [two, one, none] =
         [(1.0 - b) * (1.0 - b) - squared * b, (1.0 - a) * (1.0 - b), (1.0 - a) * (1.0 - a) - squared * a];
     let root = (one + (one * one - two * none).max(0.0).sqrt()) / two;

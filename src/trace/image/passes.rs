@@ -7,7 +7,7 @@ use super::light_pass::LightPassProgress;
 use super::noise::Measured;
 use crate::trace::World;
 use crate::trace::pass::{Pass, Stage};
-use crate::trace::replicates::{HALF, REPLICATES};
+use crate::trace::replicates::{HALF_REPLICATES, REPLICATES};
 use crate::trace::stats::Stats;
 
 /// Samples of each pixel in the first pass, if no photons are gathered; each later pass doubles them.
@@ -51,7 +51,7 @@ impl Progress {
         let samples = pass.numbers.len() as u32;
         (self.samples, self.passes) = (self.samples + samples, self.passes + 1);
         if pass.replicate.is_some() {
-            self.stage = self.stage.after(samples);
+            self.stage = self.stage.after_samples(samples);
             self.sending.batches = 0;
         }
     }
@@ -73,7 +73,7 @@ impl Progress {
             return SplatWeights { image: 1.0, halves: [1.0; 2], samples: None };
         }
         let samples = self.sent_samples(world);
-        let (first, second) = samples.split_at(HALF as usize);
+        let (first, second) = samples.split_at(HALF_REPLICATES as usize);
         let [all, first, second] = [&samples[..], first, second].map(|part| part.iter().sum::<f64>());
         let ratio = |share: f64, samples: f64| if samples > 0.0 { share / samples } else { 0.0 };
         let halves = [first, second].map(|half| ratio(0.5 * all, half));

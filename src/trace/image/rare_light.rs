@@ -54,7 +54,7 @@ fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlie
         let tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_observer(&observer);
         let mut tracer = tracer.with_layers();
         let rate = world.rate(pixel);
-        for number in rate.own_numbers(&pass.numbers) {
+        for number in rate.sample_numbers(&pass.numbers) {
             tracer.light_vertices = light.vertices(rate.average_number(number) - pass.numbers.start);
             let sample = take_sample(&mut tracer, &Sampler::of_pixel(pass.seed, pixel, number), pixel);
             let splatted = world.amount(sample.rgb);

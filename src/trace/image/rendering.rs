@@ -425,8 +425,8 @@ impl<'a> Rendering<'a> {
         });
         let (window, passes) = (world.scene.film.window(), progress.passes);
         let places: Vec<TilePlace> = self.shard.tiles(window).collect();
-        let left = self.tiles.iter_mut().zip(places).filter(|(tile, _)| tile.passes == passes).collect();
-        for_each_in_parallel(left, &|(tile, place): (&mut Tile, TilePlace)| {
+        let remaining_tiles = self.tiles.iter_mut().zip(places).filter(|(tile, _)| tile.passes == passes).collect();
+        for_each_in_parallel(remaining_tiles, &|(tile, place): (&mut Tile, TilePlace)| {
             let taken = tile.take::<N, P>(place, world, &light, &pass, callbacks.should_stop);
             (callbacks.progress)(u64::from(taken) * pass.numbers.len() as u64);
         });

@@ -109,14 +109,14 @@ pub fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
     let size = next_stage_size(stop, each).min(max_each(stop) - each.min(max_each(stop)));
     match stop.time {
         Some(time) if each > 0 => {
-            let left = clock.remaining(time);
+            let remaining_time = clock.remaining(time);
             let all = REPLICATES as u32 * each;
-            if left < time.mul_f64(MIN_TIME_SHARE) {
+            if remaining_time < time.mul_f64(MIN_TIME_SHARE) {
                 return 0;
             }
             // A run that continues from a checkpoint does not yet know how fast it is.
             let fits = clock
-                .samples_in(left.mul_f64(STAGE_TIME_SHARE), all)
+                .samples_in(remaining_time.mul_f64(STAGE_TIME_SHARE), all)
                 .map_or(1.0, |samples| samples / REPLICATES as f64);
             size.min(fits as u32)
         }

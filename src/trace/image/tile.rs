@@ -132,7 +132,7 @@ impl Tile {
         let measures_blur = light.photons.as_ref().is_some_and(|photons| photons.half_blur.is_some());
         let rate = world.rate(pixel);
         let caught_before = pass.replicate.and_then(|_| self.layers.catcher_luminance(&world.layers, place));
-        for number in rate.own_numbers(&pass.numbers) {
+        for number in rate.sample_numbers(&pass.numbers) {
             let average_number = rate.average_number(number);
             tracer.light_vertices = light.vertices(average_number - pass.numbers.start);
             let sampler = Sampler::of_pixel(pass.seed, pixel, number);
@@ -145,13 +145,14 @@ impl Tile {
                 self.stats.non_finite += 1;
                 self.first_non_finite.get_or_insert([pixel[0].into(), pixel[1].into(), number.into()]);
             } else if let Some(layers) = tracer.layers() {
-                let early = pass.is_in_first_half().unwrap_or(average_number < world.method.samples.div_ceil(2));
-                layers.keep(sample.is_subtracted);
-                self.layers.add(&world.layers, place, early, &sample, &layers.sample_row());
+                let is_first_half =
+                    pass.is_in_first_half().unwrap_or(average_number < world.method.samples.div_ceil(2));
+                layers.keep_spectrum(sample.is_subtracted);
+                self.layers.add(&world.layers, place, is_first_half, &sample, &layers.sample_row());
             }
         }
         if let Some(layers) = tracer.layers() {
-            layers.hand_over(self.layers.rows_mut(&world.layers, place));
+            layers.add_spectra_to(self.layers.rows_mut(&world.layers, place));
         }
         if let Some(replicate) = pass.replicate {
             self.replicates.add(place, replicate, sums.each_ref(), blurs.each_ref());

@@ -179,16 +179,16 @@ fn pass_through<const N: usize, P: Polarization<N>>(
     through: &PassThrough<N, P>,
 ) -> bool {
     let (throughput, key) = (path.throughput.through(through.straight.share()), path.key.child(PASS_THROUGH_BRANCH));
-    let beyond = Path { throughput, key, polarization: through.polarization, ..path.beyond_surface(point) };
+    let passed_path = Path { throughput, key, polarization: through.polarization, ..path.beyond_surface(point) };
     let all = throughput == path.throughput;
     if all || walker.follows_all(path, draw) {
-        *walker.pending.add(|| *path) = beyond;
+        *walker.pending.add(|| *path) = passed_path;
         return all;
     }
     let shares = draw.shares(path.parted);
     let share = throughput.weight(shares) / path.throughput.weight(shares);
     if sampler.get_random_4d(path.key, PASS_THROUGH)[0] < share {
-        *walker.pending.add(|| *path) = Path { throughput: throughput.scaled(1.0 / share), ..beyond };
+        *walker.pending.add(|| *path) = Path { throughput: throughput.scaled(1.0 / share), ..passed_path };
         return true;
     }
     path.throughput = path.throughput.scaled(1.0 / (1.0 - share));

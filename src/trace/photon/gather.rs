@@ -177,7 +177,7 @@ impl<const N: usize, P: Polarization<N>> GatherPoint<'_, N, P> {
 
     /// Whether lanes part on the way of the path and of a photon from the direction `wi`.
     fn parted(&self, wi: DVec3) -> bool {
-        self.path.parted || (self.at.parts && wi.dot(self.at.flat) < 0.0)
+        self.path.parted || (self.at.is_parting && wi.dot(self.at.flat) < 0.0)
     }
 }
 

@@ -43,7 +43,7 @@ pub struct LightVertices<const N: usize> {
     /// The origin of the places of candidates, which are in units of D.
     center: DVec3,
     /// D.
-    near: f64,
+    near_distance: f64,
     /// Probability that camera paths continue for light that light paths do not find; `None` where they find all.
     pub rest_chance: Option<f64>,
     /// The instructions that weigh candidates.
@@ -93,12 +93,20 @@ impl<const N: usize> LightVertices<N> {
         for (number, (vertex, power)) in vertices.iter().zip(powers(&vertices)).enumerate() {
             candidates[number % count].set(number / count, (vertex.position - center) / near, vertex.flat, power);
         }
-        Self { candidates, vertices, center, near, rest_chance, instructions: Instructions::best(), stats }
+        Self {
+            candidates,
+            vertices,
+            center,
+            near_distance: near,
+            rest_chance,
+            instructions: Instructions::best(),
+            stats,
+        }
     }
 
     /// Returns D^2: of light from a distance d, the part d^2 / (d^2 + D^2) is looked for at vertices.
     pub fn near_squared(&self) -> f64 {
-        self.near * self.near
+        self.near_distance * self.near_distance
     }
 
     /// Whether vertices contribute the light of a ray from a light, beyond the first surface that it hits.
@@ -115,7 +123,7 @@ impl<const N: usize> LightVertices<N> {
     pub fn choose(&self, from: DVec3, flat: DVec3, [u, v]: [f64; 2]) -> Option<(&LightVertex<N>, f64)> {
         let count = self.candidates.len();
         let number = ((u * count as f64) as usize).min(count.checked_sub(1)?);
-        let [from, flat] = [(from - self.center) / self.near, flat].map(|v| v.as_vec3().to_array());
+        let [from, flat] = [(from - self.center) / self.near_distance, flat].map(|v| v.as_vec3().to_array());
         let weights = self.instructions.run(CandidateWeights { candidates: &self.candidates[number], from, flat });
         let rows =
             weights.iter().fold([0.0; ROWS], |rows, weights| std::array::from_fn(|row| rows[row] + weights[row]));

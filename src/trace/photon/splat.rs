@@ -14,7 +14,8 @@ use crate::trace::media;
 use crate::trace::received_light::ReceivedLight;
 use crate::trace::spectrum_sample::Spectrum;
 use crate::trace::walk::{
-    DYE_BRANCH, Interaction, Occluders, Polarization, SeenPhoton, SeenThrough, VisibilityTest, Walker, parts, shading,
+    DYE_BRANCH, Interaction, Occluders, Polarization, SeenPhoton, SeenThrough, VisibilityTest, Walker, parts_lanes,
+    shading,
 };
 
 /// Use of the random numbers where the camera sees a photon: the point of the lens.
@@ -117,10 +118,10 @@ pub fn splat_photon<const N: usize, P: Polarization<N>>(
     };
     for &seen_through in all {
         let Some(connection) = CameraConnection::new(walker, photon_hit, seen_through) else { return };
-        connection.keep(connection.scattered(), splats);
+        connection.push_splats(connection.scattered(), splats);
         if let Some(dyes) = &world.dyes {
             for (number, dye) in dyes.of_object(&world.scene, photon_hit.at.object).enumerate() {
-                connection.keep(connection.emitted_by_dye(dyes, dye, number), splats);
+                connection.push_splats(connection.emitted_by_dye(dyes, dye, number), splats);
             }
         }
     }
@@ -138,18 +139,18 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         let world = walker.world;
         let (camera, film) = (&world.scene.camera, world.scene.film);
         let u = if camera.has_lens() { photon.sampler.get_random_4d(path.key, LENS) } else { [0.5; 4] };
-        let seen = camera.see(point.position, [u[0], u[1]])?;
+        let projection = camera.see(point.position, [u[0], u[1]])?;
         let (window, reach) = (film.window(), film.filter.reach());
-        let mut places = camera.places(seen.film, reach + f64::from(film.overscan.widest()));
+        let mut places = camera.places(projection.film, reach + f64::from(film.overscan.widest()));
         let [first, end] = window.ends().map(|place| place.map(|x| x as f64));
         let near = |x: f64, axis: usize| x >= first[axis] - reach && x <= end[axis] + reach;
         places.retain(|place| near(place.x, 0) && near(place.y, 1));
         if places.is_empty() {
             return None;
         }
-        let same_side = seen.direction.dot(*flat) > 0.0;
-        let viewed = at.viewed_from(seen.direction);
-        Some(Self { walker, photon_hit, projection: seen, places, same_side, viewed, seen_through })
+        let same_side = projection.direction.dot(*flat) > 0.0;
+        let viewed = at.viewed_from(projection.direction);
+        Some(Self { walker, photon_hit, projection, places, same_side, viewed, seen_through })
     }
 
     /// Returns what reaches the camera of light that leaves the place toward it, and how it is polarized on its way.
@@ -201,7 +202,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         let Interaction { context, material, .. } = at;
         let world = self.walker.world;
         let (mut bsdf_cos, _) = shading::evaluate(material, &viewed.context, viewed.flat, context.wo)?;
-        let parted = path.parted || (!same_side && parts(at.lobes, material, &viewed.context));
+        let parted = path.parted || (!same_side && parts_lanes(at.lobes, material, &viewed.context));
         let start = || path.polarization.after_forward_scattering(viewed, context.wo, &mut bsdf_cos);
         let (emission, on_its_way) = self.arriving_light(context.draw, start, || photon_hit.emission(world))?;
         let polarized = path.polarization.see(at, &viewed.context, &on_its_way, world, &self.camera_ray());
@@ -269,7 +270,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
     }
 
     /// Keeps a splat at each place where it reaches a pixel.
-    fn keep(&self, splat: Option<Splat>, splats: &mut Vec<PlacedSplat>) {
+    fn push_splats(&self, splat: Option<Splat>, splats: &mut Vec<PlacedSplat>) {
         let film = self.walker.world.scene.film;
         let Some(splat) = splat else { return };
         let placed = self.places.iter().map(|&place| PlacedSplat { place, splat: splat.clone() });

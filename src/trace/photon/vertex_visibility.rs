@@ -31,12 +31,12 @@ pub fn usefulness(world: &World, places: &[DiffusePlace], vertices: &[DVec3], po
     }
     let last_occluder = Cell::new(None);
     let seen_counts = |(number, group): (usize, &[DVec3])| {
-        let seen = (0..TESTS_PER_GROUP).filter(|&look| {
+        let seen_pairs = (0..TESTS_PER_GROUP).filter(|&look| {
             let [u, v, ..] =
                 Sampler::new(world.method.seed ^ SEED, [number as u32, 0], look).get_4d(BranchKey::CAMERA, 0);
             sees(world, pick(places, v), *pick(group, u), &last_occluder)
         });
-        std::iter::repeat_n(seen.count(), group.len())
+        std::iter::repeat_n(seen_pairs.count(), group.len())
     };
     let seen: Vec<usize> = vertices.chunks(GROUP_SIZE).enumerate().flat_map(seen_counts).collect();
     // Count one more test that succeeds: a vertex that chance alone kept from being seen must not be left out.

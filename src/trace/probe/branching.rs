@@ -16,7 +16,7 @@ pub enum Branching {
 }
 
 /// Pixels along each side of the image that are tested.
-const SIDE: u32 = 16;
+const PIXELS_PER_SIDE: u32 = 16;
 /// Most objects that are tested one by one.
 const MAX_OBJECTS: usize = 64;
 
@@ -35,9 +35,9 @@ fn trace_branches<const N: usize>(world: &World, max: f64) -> Branching {
         take_sample(&mut tracer, &Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
         (tracer.walker.stats.rays - before, tracer.walker.stats.by_chance > 0)
     };
-    let max_total = max * f64::from(SIDE * SIDE);
+    let max_total = max * f64::from(PIXELS_PER_SIDE * PIXELS_PER_SIDE);
     let mut surfaces = 0;
-    for pixel in film.middles_of_cells(SIDE) {
+    for pixel in film.middles_of_cells(PIXELS_PER_SIDE) {
         let (more, by_chance) = trace_branches(pixel);
         surfaces += more;
         if by_chance || surfaces as f64 > max_total {
@@ -46,7 +46,7 @@ fn trace_branches<const N: usize>(world: &World, max: f64) -> Branching {
     }
     match pixels_of_objects(world, Lobes::is_transmissive).into_iter().find(|&pixel| trace_branches(pixel).1) {
         Some(pixel) => Branching::Beyond(pixel),
-        None => Branching::Affordable(surfaces as f64 / f64::from(SIDE * SIDE)),
+        None => Branching::Affordable(surfaces as f64 / f64::from(PIXELS_PER_SIDE * PIXELS_PER_SIDE)),
     }
 }
 

@@ -13,8 +13,8 @@ use crate::trace::width::in_lanes;
 use crate::trace::{Transport, World};
 
 /// Camera samples along each side of the image: a few to detect a room, and more to learn what lights it.
-const DETECTION_SIDE: u32 = 24;
-const SIDE: u32 = 48;
+const DETECTION_SAMPLES_PER_SIDE: u32 = 24;
+const SAMPLES_PER_SIDE: u32 = 48;
 /// Share of the way to a place that a bounce must travel to have reached what is there.
 const MIN_REACH: f64 = 0.9;
 /// Number of equally bright bounces that tell what lights a room. With fewer, or with nearly all light in as few, more
@@ -48,10 +48,10 @@ pub fn room_light(world: &World) -> RoomLight {
 
 fn learn_room_light(world: &World) -> Option<RoomLight> {
     // A few samples tell whether there is a room at all.
-    Room::of(world, bounces(world, DETECTION_SIDE), SEED)?;
-    let room = Room::of(world, bounces(world, SIDE), SEED)?;
+    Room::from_bounces(world, bounces(world, DETECTION_SAMPLES_PER_SIDE), SEED)?;
+    let room = Room::from_bounces(world, bounces(world, SAMPLES_PER_SIDE), SEED)?;
     let is_rare = !is_lit_often(&room);
-    let openings = Openings::of(&room, if is_rare { MAX_PIECES } else { 1 });
+    let openings = Openings::find(&room, if is_rare { MAX_PIECES } else { 1 });
     let openings = openings.and_then(|openings| bright_openings(world, &openings));
     Some(RoomLight { places: bright_places(&room), openings, is_rare })
 }
@@ -72,8 +72,8 @@ fn is_lit_often(room: &Room) -> bool {
 
 /// Returns the bright places among those that bounces found.
 fn bright_places(room: &Room) -> Option<BrightPlaces> {
-    let lit = room.bounces.iter().filter(|bounce| bounce.light > 0.0);
-    let points: Vec<(DVec3, f64)> = lit.map(|bounce| (room.end_of(bounce), bounce.light)).collect();
+    let lit_bounces = room.bounces.iter().filter(|bounce| bounce.light > 0.0);
+    let points: Vec<(DVec3, f64)> = lit_bounces.map(|bounce| (room.end_of(bounce), bounce.light)).collect();
     select_bright(room, clusters(points, MAX_PLACES).iter().map(Cluster::rectangle))
 }
 
@@ -84,13 +84,13 @@ fn bright_openings(world: &World, Openings { walls, rectangles }: &Openings) -> 
     // Bounces aimed at the openings tell how much light comes through them.
     let aimed = BrightPlaces { within: *walls, places, elsewhere: 0.0, missed: 0.0, are_openings: true };
     let world = world.with_bright(Some(aimed));
-    let room = Room::of(&world, bounces(&world, SIDE), SEED)?;
+    let room = Room::from_bounces(&world, bounces(&world, SAMPLES_PER_SIDE), SEED)?;
     Some(BrightPlaces { within: *walls, are_openings: true, ..select_bright(&room, rectangles.iter().copied())? })
 }
 
 /// Keeps those rectangles from or through which more light comes than from elsewhere.
 fn select_bright(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option<BrightPlaces> {
-    let mut places: Vec<LearnedPlace> = rectangles.filter_map(LearnedPlace::of).collect();
+    let mut places: Vec<LearnedPlace> = rectangles.filter_map(LearnedPlace::from_rectangle).collect();
     let mut elsewhere = RmsSums::default();
     let (mut sky_light, mut missed) = (0.0, 0.0);
     for bounce in &room.bounces {
@@ -130,7 +130,7 @@ struct LearnedPlace {
 }
 
 impl LearnedPlace {
-    fn of(rectangle: Rectangle) -> Option<Self> {
+    fn from_rectangle(rectangle: Rectangle) -> Option<Self> {
         let Rectangle { center, half: [u, v] } = rectangle;
         let area = u.cross(v).length();
         (area > 0.0 && area.is_finite()).then(|| Self {

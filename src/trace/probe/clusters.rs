@@ -31,7 +31,7 @@ const ORIENTATIONS: u32 = 12;
 /// Steps that refine the smallest rectangle, each half as large as the one before.
 const REFINE_STEPS: u32 = 24;
 /// Planes along each axis at which points may be split.
-const CUTS: usize = 7;
+const CUTS_PER_AXIS: usize = 7;
 /// Share of the total cost, the sum of weights times areas, that a split must save.
 const MIN_SAVING: f64 = 0.05;
 /// Most points that are used.
@@ -150,8 +150,8 @@ impl Cluster {
     fn split(&self) -> Option<[Self; 2]> {
         let mut best: Option<(f64, DVec3, f64)> = None;
         for axis in self.half {
-            for cut in 0..CUTS {
-                let place = 2.0 * (cut as f64 + 1.0) / (CUTS as f64 + 1.0) - 1.0;
+            for cut in 0..CUTS_PER_AXIS {
+                let place = 2.0 * (cut as f64 + 1.0) / (CUTS_PER_AXIS as f64 + 1.0) - 1.0;
                 let level = axis.dot(self.center) + place * axis.length_squared();
                 let mut sides = [PointSpread::default(); 2];
                 self.points

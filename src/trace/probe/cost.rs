@@ -52,7 +52,7 @@ impl PhotonTimes {
 /// A larger ratio means that the sample was not measured well.
 const MAX_COST: f64 = 100.0;
 /// Camera samples along each side of the image.
-const SIDE: u32 = 48;
+const SAMPLES_PER_SIDE: u32 = 48;
 /// Samples that are timed together.
 const BATCH_SIZE: u32 = 16;
 /// A batch is timed again if its rays take this many times the median.
@@ -73,12 +73,12 @@ pub fn probe(world: &World) -> Probe {
 }
 
 fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
-    let pixels: Vec<_> = world.scene.film.window().middles_of_cells(SIDE).collect();
+    let pixels: Vec<_> = world.scene.film.window().middles_of_cells(SAMPLES_PER_SIDE).collect();
     // Tables that are computed on first use must not count toward the time of a sample.
     let is_rough = |id: u32| world.scene.material_of(id).roughness().is_some_and(|roughness| roughness.value() > 0.0);
     if (0..world.scene.objects.len()).any(|object| is_rough(object as u32)) {
         let mut tracer = PathTracer::<N, P>::new(world);
-        for &[x, y] in &pixels[..SIDE as usize] {
+        for &[x, y] in &pixels[..SAMPLES_PER_SIDE as usize] {
             take_sample(&mut tracer, &Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
         }
     }
@@ -102,7 +102,9 @@ fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
         BatchTime { time: start.elapsed(), rays: tracer.walker.stats.rays - before }
     };
     let (start, mut batches) = (Instant::now(), Vec::new());
-    while batches.len() < (SIDE * SIDE / BATCH_SIZE) as usize && start.elapsed() < MAX_SAMPLE_TIME {
+    while batches.len() < (SAMPLES_PER_SIDE * SAMPLES_PER_SIDE / BATCH_SIZE) as usize
+        && start.elapsed() < MAX_SAMPLE_TIME
+    {
         let first = batches.len() as u32 * BATCH_SIZE;
         batches.push(time_batch(first..first + BATCH_SIZE));
     }

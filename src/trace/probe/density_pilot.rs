@@ -27,10 +27,10 @@ pub struct Adaptive {
 
 /// Pixels tested in each cell, looks at each pixel, and samples of each look. The samples of a look are spread evenly,
 /// like those of an image, so that the difference between two looks shows the noise that this leaves.
-const PIXELS: u32 = 2;
-const LOOKS: u32 = 2;
-const SAMPLES: u32 = 4;
-const SAMPLES_PER_CELL: f64 = (PIXELS * LOOKS * SAMPLES) as f64;
+const PIXELS_PER_CELL: u32 = 2;
+const LOOKS_PER_PIXEL: u32 = 2;
+const SAMPLES_PER_LOOK: u32 = 4;
+const SAMPLES_PER_CELL: f64 = (PIXELS_PER_CELL * LOOKS_PER_PIXEL * SAMPLES_PER_LOOK) as f64;
 /// Fewest pixels of a cell, and most cells: independent of the number of samples, so that more can be added later.
 const MIN_CELL_PIXELS: f64 = 32.0;
 const MAX_CELLS: f64 = 4096.0;
@@ -77,7 +77,7 @@ struct PixelMoments {
 /// Statistics of the pixels of a cell, and the rays of all their samples.
 #[derive(Clone, Copy, Debug, Default)]
 struct CellSamples {
-    pixels: [PixelMoments; PIXELS as usize],
+    pixels: [PixelMoments; PIXELS_PER_CELL as usize],
     rays: f64,
 }
 
@@ -126,7 +126,7 @@ fn look_at_row<const N: usize, P: Polarization<N>>(
             // At a third and two thirds of the cell's diagonal.
             let at = [column, row];
             let place = |i: usize| {
-                let within = f64::from(at[i]) + f64::from(number + 1) / f64::from(PIXELS + 1);
+                let within = f64::from(at[i]) + f64::from(number + 1) / f64::from(PIXELS_PER_CELL + 1);
                 ((within * f64::from(format[i]) / f64::from(cells[i])) as i32).min(format[i] as i32 - 1)
             };
             *pixel = look_at_pixel(world, &mut tracer, [place(0), place(1)]);
@@ -147,18 +147,18 @@ fn look_at_pixel<const N: usize, P: Polarization<N>>(
     let mut look = |look: u64| {
         let seed = (world.method.seed ^ SEED).wrapping_add(look);
         let mut mean = [0.0; 3];
-        for number in 0..SAMPLES {
+        for number in 0..SAMPLES_PER_LOOK {
             let mut rgb = take_sample(tracer, &Sampler::of_pixel(seed, pixel, number), pixel).rgb;
             // A shadow catcher shows only shadows, however noisy its light is.
             let shadow = tracer.layers().map(|layers| world.layers.catcher_change(layers.sample_row().row));
             shadow.iter().for_each(|shadow| add(&mut rgb, *shadow));
-            (0..3).filter(|&i| rgb[i].is_finite()).for_each(|i| mean[i] += rgb[i] / f64::from(SAMPLES));
+            (0..3).filter(|&i| rgb[i].is_finite()).for_each(|i| mean[i] += rgb[i] / f64::from(SAMPLES_PER_LOOK));
         }
         mean
     };
     let [one, other] = [look(0), look(1)];
     let mean = std::array::from_fn(|i| 0.5 * (one[i] + other[i]));
-    let variance = |i: usize| 0.5 * f64::from(SAMPLES) * (one[i] - other[i]) * (one[i] - other[i]);
+    let variance = |i: usize| 0.5 * f64::from(SAMPLES_PER_LOOK) * (one[i] - other[i]) * (one[i] - other[i]);
     PixelMoments { mean, variance: std::array::from_fn(variance) }
 }
 
@@ -168,8 +168,8 @@ fn smoothed_noise(cells: [u32; 2], found: &[CellSamples], pixels: Range<usize>, 
     let dark = means().map(|x| x * x).sum::<f64>() / means().count().max(1) as f64
         * if is_absolute { 1.0 } else { DARK_OFFSET };
     let relative_variance = |PixelMoments { mean, variance }: &PixelMoments| {
-        let own = |i: usize| if is_absolute { 0.0 } else { mean[i] * mean[i] };
-        (0..3).map(|i| variance[i] / (own(i) + dark).max(f64::MIN_POSITIVE)).sum::<f64>()
+        let mean_square = |i: usize| if is_absolute { 0.0 } else { mean[i] * mean[i] };
+        (0..3).map(|i| variance[i] / (mean_square(i) + dark).max(f64::MIN_POSITIVE)).sum::<f64>()
     };
     let own: Vec<f64> =
         found.iter().map(|found| found.pixels[pixels.clone()].iter().map(relative_variance).sum()).collect();

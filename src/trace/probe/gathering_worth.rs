@@ -33,10 +33,10 @@ pub struct GatheredWorth {
 /// with that of paths that lead there, and examining them takes as long as a few rays.
 const MAX_EXAMINED: f64 = 16.0;
 /// Maps that are compared.
-const MAPS: u64 = 2;
+const MAP_COUNT: u64 = 2;
 /// Pixels along each side of the image that gather from the maps, and samples of each.
-const SIDE: u32 = 20;
-const SAMPLES: u32 = 4;
+const PIXELS_PER_SIDE: u32 = 20;
+const SAMPLES_PER_PIXEL: u32 = 4;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6761_7468;
 
@@ -96,11 +96,11 @@ fn compare_maps<const N: usize>(world: &World, reached: &[DVec3]) -> Option<Gath
     let FirstMap { enough, is_near, ref world, photons: mut first } = FirstMap::<N>::new(world, reached)?;
     let film = world.scene.film;
     let to_xyz = film.color_space.to_xyz();
-    let mut places: Vec<_> = film.whole().middles_of_cells(SIDE).collect();
+    let mut places: Vec<_> = film.whole().middles_of_cells(PIXELS_PER_SIDE).collect();
     let mut photon_moments = vec![Moments::default(); places.len()];
     let mut sample_moments = photon_moments.clone();
     let (mut all_sent, mut rays, mut sample_rays, mut second_moment) = (0, 0, 0, 0.0);
-    for map in 0..MAPS {
+    for map in 0..MAP_COUNT {
         let make_map = || photons::<N, Polarized>(world, &Pass::for_photons_only(world, map as u32));
         let photons = first.take().or_else(make_map)?;
         (all_sent, rays) = (all_sent + photons.sent, rays + photons.stats.rays);
@@ -115,7 +115,7 @@ fn compare_maps<const N: usize>(world: &World, reached: &[DVec3]) -> Option<Gath
         let mut looked_at = 0;
         for (place, &[x, y]) in places.iter().enumerate() {
             let before = all_gathered.get();
-            for number in 0..SAMPLES {
+            for number in 0..SAMPLES_PER_PIXEL {
                 let so_far = all_gathered.get();
                 let sampler = Sampler::of_pixel((world.method.seed ^ SEED).wrapping_add(u64::from(number)), [x, y], 0);
                 let found = take_sample(&mut tracer, &sampler, [x, y]).rgb;
@@ -128,7 +128,7 @@ fn compare_maps<const N: usize>(world: &World, reached: &[DVec3]) -> Option<Gath
                 }
             }
             let gathered = all_gathered.get();
-            let mean = std::array::from_fn(|i| (gathered[i] - before[i]) / f64::from(SAMPLES));
+            let mean = std::array::from_fn(|i| (gathered[i] - before[i]) / f64::from(SAMPLES_PER_PIXEL));
             photon_moments[place].add(apply(&to_xyz, mean));
             looked_at += 1;
             if map == 0 && tracer.walker.stats.rays > RAYS_OF_A_LOOK {
@@ -142,11 +142,12 @@ fn compare_maps<const N: usize>(world: &World, reached: &[DVec3]) -> Option<Gath
     let count = places.len() as f64;
     let mean = |variances: &[f64]| variances.iter().sum::<f64>() / count;
     let map_variances: Vec<f64> =
-        photon_moments[..places.len()].iter().map(|sums| sums.variance(MAPS as f64)).collect();
-    let variances = sample_moments[..places.len()].iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
-    let sample_count = MAPS as f64 * count * f64::from(SAMPLES);
+        photon_moments[..places.len()].iter().map(|sums| sums.variance(MAP_COUNT as f64)).collect();
+    let variances =
+        sample_moments[..places.len()].iter().map(|sums| sums.variance(f64::from(SAMPLES_PER_PIXEL))).collect();
+    let sample_count = MAP_COUNT as f64 * count * f64::from(SAMPLES_PER_PIXEL);
     (is_near || second_moment > 0.0).then(|| GatheredWorth {
-        variance: mean(&map_variances) * pixels * all_sent as f64 / MAPS as f64,
+        variance: mean(&map_variances) * pixels * all_sent as f64 / MAP_COUNT as f64,
         rays: rays as f64 / all_sent as f64,
         enough,
         second_moment: second_moment / sample_count * pixels * pixels,

@@ -14,12 +14,12 @@ const RAYS_PER_PIECE: u32 = 1 << 14;
 /// Number of ways out that tell where to look closely.
 const MAX_WAYS_OUT: usize = 64;
 /// Rounds of close looks. Each begins at what the one before has found, so that slits are found from end to end.
-const ROUNDS: usize = 4;
+const SEARCH_ROUNDS: usize = 4;
 /// Factor by which the rectangles found are enlarged before they are sampled uniformly.
 const SEARCH_MARGIN: f64 = 1.5;
 /// Numbers of the first piece that looks closely, of the one that samples uniformly, and of the one that finds walls.
 const CLOSE_PIECE: usize = 1 << 16;
-const UNIFORM_PIECE: usize = CLOSE_PIECE + ROUNDS;
+const UNIFORM_PIECE: usize = CLOSE_PIECE + SEARCH_ROUNDS;
 const WALL_PIECE: usize = UNIFORM_PIECE + 1;
 /// Close looks aim at a distance from a way out, in sizes of the room, whose exponent of two is drawn uniformly in this
 /// range.
@@ -27,7 +27,7 @@ const CLOSE_EXPONENTS: [f64; 2] = [-14.0, -3.0];
 /// Least weight of a place, in squares of the room's size: places nearer to a way out do not weigh less.
 const MIN_WEIGHT: f64 = 1.0 / (1 << 28) as f64;
 /// Factor by which an opening is enlarged: the part that was not found, hit only by chance, would be too bright.
-const MARGIN: f64 = 1.03;
+const ENLARGEMENT: f64 = 1.03;
 /// Two parts are one opening if a rectangle around both is at most this many times as large as the two.
 const MERGE_RATIO: f64 = 1.3;
 /// The use of random numbers that draws rays; looks around a place have smaller numbers.
@@ -49,11 +49,11 @@ pub struct Openings {
 
 impl Openings {
     /// Finds the openings of a room, if it has some, with `pieces` pieces of work, or fewer if they find enough.
-    pub fn of(room: &Room, pieces: usize) -> Option<Self> {
+    pub fn find(room: &Room, pieces: usize) -> Option<Self> {
         let search = OpeningSearch { room, walls: walls(room)? };
         let mut ways_out = search.ways_out(pieces);
         let mut points = Vec::new();
-        for round in 0..ROUNDS {
+        for round in 0..SEARCH_ROUNDS {
             if ways_out.is_empty() {
                 return None;
             }
@@ -66,7 +66,7 @@ impl Openings {
             rectangles(points).into_iter().map(|found| found.scaled(SEARCH_MARGIN)).collect();
         let found = if enlarged.is_empty() { Vec::new() } else { search.points_within(&enlarged) };
         let found = rectangles(found.into_iter().map(|place| (place, 1.0)).collect());
-        let rectangles: Vec<Rectangle> = found.into_iter().map(|found| found.scaled(MARGIN)).collect();
+        let rectangles: Vec<Rectangle> = found.into_iter().map(|found| found.scaled(ENLARGEMENT)).collect();
         (!rectangles.is_empty()).then_some(Self { walls: search.walls, rectangles })
     }
 }

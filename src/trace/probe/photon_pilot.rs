@@ -11,9 +11,9 @@ use crate::trace::{LightPass, RAYS_OF_A_LOOK, World};
 
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6168_6561;
-/// One in `AHEAD` of a target's photons is sent ahead to learn which are seen: at most `MAX_SENT`, and none if that is
-/// fewer than `MIN_SENT`, which tell too little.
-const AHEAD: u64 = 8;
+/// One in `AHEAD_RATIO` of a target's photons is sent ahead to learn which are seen: at most `MAX_SENT`, and none if
+/// that is fewer than `MIN_SENT`, which tell too little.
+const AHEAD_RATIO: u64 = 8;
 const MIN_SENT: u64 = 4096;
 const MAX_SENT: u64 = 1 << 16;
 /// Most photons of all targets that the plan sends ahead, whatever the size of the image. The first number is for
@@ -25,7 +25,7 @@ const PLAN_SEEN_PHOTONS: u64 = 1 << 16;
 /// glass balls takes a hundred.
 const MAX_RAYS: f64 = (4 * RAYS_OF_A_LOOK) as f64;
 /// Photons of all targets that tell how many rays one takes.
-const FIRST_SENT: u64 = 256;
+const FIRST_PHOTONS: u64 = 256;
 
 /// What photons sent ahead found.
 #[derive(Default)]
@@ -64,10 +64,11 @@ fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> PilotPhoton
 
 /// Returns the number of photons of each target that tell how many rays one takes.
 fn first_per_target(world: &World) -> u64 {
-    world.photon_targets.as_ref().map_or(0, |targets| (FIRST_SENT / targets.targets.len() as u64).max(1))
+    world.photon_targets.as_ref().map_or(0, |targets| (FIRST_PHOTONS / targets.targets.len() as u64).max(1))
 }
 
-/// Sends `max` photons of each target ahead, or as many as [`MAX_RAYS`] can trace, but at least [`FIRST_SENT`] in all.
+/// Sends `max` photons of each target ahead, or as many as [`MAX_RAYS`] can trace, but at least [`FIRST_PHOTONS`] in
+/// all.
 fn send_some_ahead<const N: usize>(world: &World, max: u64) -> PilotPhotons {
     let first = max.min(first_per_target(world));
     let mut pilot_photons = send_ahead::<N>(world, 0..first);
@@ -124,7 +125,7 @@ pub fn guide_photons(world: &mut World) {
 /// Sends at most `max` photons of each target ahead, and aims the others at where those were seen.
 fn train<const N: usize>(world: &mut World, max: u64) {
     let targets = world.photon_targets.iter().flat_map(|targets| &targets.targets);
-    let Some(least) = targets.map(|target| target.photons / AHEAD).min() else { return };
+    let Some(least) = targets.map(|target| target.photons / AHEAD_RATIO).min() else { return };
     let ahead = least.min(MAX_SENT).min(max);
     if ahead >= MIN_SENT {
         let found = send_ahead::<N>(world, 0..ahead).outcomes;

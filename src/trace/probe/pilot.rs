@@ -45,9 +45,9 @@ pub struct SampleWorth {
 /// Most photons of a group of lights in one image of a pilot, photons of all groups together, and number of images.
 const MAX_GROUP_PHOTONS: u64 = 4096;
 const MAX_PHOTONS: u64 = 4 * MAX_GROUP_PHOTONS;
-const IMAGES: u64 = 4;
+const IMAGE_COUNT: u64 = 4;
 /// Cells along each side of the format.
-pub(super) const SIDE: u32 = 24;
+pub(super) const CELLS_PER_SIDE: u32 = 24;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7069_6c6f;
 
@@ -66,7 +66,7 @@ fn measure_groups<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
     let lights = whole.photon_light_groups();
     let groups: Vec<_> = smooth.flat_map(|smooth| lights.iter().map(move |lights| (lights.clone(), smooth))).collect();
     let photons = (MAX_PHOTONS / groups.len().max(1) as u64).min(MAX_GROUP_PHOTONS);
-    let affordable = photons_within(&world, RAYS_OF_A_LOOK as f64 / (IMAGES * groups.len().max(1) as u64) as f64);
+    let affordable = photons_within(&world, RAYS_OF_A_LOOK as f64 / (IMAGE_COUNT * groups.len().max(1) as u64) as f64);
     let photons = photons.min(affordable);
     groups.into_iter().filter_map(|(lights, to)| measure_group::<N>(whole, &mut world, lights, to, photons)).collect()
 }
@@ -87,17 +87,17 @@ fn measure_group<const N: usize>(
     world.photon_targets = Some(group_targets);
     let to_xyz = world.scene.film.color_space.to_xyz();
     let (mut values, mut photons, mut rays) = (Vec::new(), 0, 0);
-    for image in 0..IMAGES {
+    for image in 0..IMAGE_COUNT {
         world.method.seed = (whole.method.seed ^ SEED).wrapping_add(image);
-        let mut seen = Vec::new();
-        let sent = for_each_splat::<N, Polarized>(world, &mut |pixel, splat| seen.push((pixel, splat.rgb)));
+        let mut splats = Vec::new();
+        let sent = for_each_splat::<N, Polarized>(world, &mut |pixel, splat| splats.push((pixel, splat.rgb)));
         (photons, rays) = (photons + sent.photons, rays + sent.stats.rays);
-        values.extend(sum_by_pixel(seen).into_iter().map(|(pixel, rgb)| {
+        values.extend(sum_by_pixel(splats).into_iter().map(|(pixel, rgb)| {
             let [x, y, z] = apply(&to_xyz, rgb);
             (pixel, [x, y, z, x + y + z])
         }));
     }
-    let images = IMAGES as f64;
+    let images = IMAGE_COUNT as f64;
     let each = photons as f64 / images;
     let squares = values.iter().map(|&(pixel, light)| (pixel, light.map(|x| x * x))).collect();
     let (sums, squares) = (sum_by_pixel(values), sum_by_pixel(squares));
@@ -109,7 +109,7 @@ fn measure_group<const N: usize>(
         let variances: [f64; 4] = std::array::from_fn(|i| scaled_variance(sums[i], squares[i]));
         (0..3).for_each(|i| brings[i] += sums[i] / images);
         variance += variances[..3].iter().sum::<f64>();
-        let cell = film.whole().cell_of(SIDE, [pixel % film.width, pixel / film.width]);
+        let cell = film.whole().cell_of(CELLS_PER_SIDE, [pixel % film.width, pixel / film.width]);
         cells[cell].mean += sums[3] / (images * sizes[cell]);
         cells[cell].variance += variances[3] / sizes[cell];
     }
@@ -120,8 +120,8 @@ fn measure_group<const N: usize>(
 fn cell_sizes(film: FilmSettings) -> Vec<f64> {
     let cell_lengths = |size: u32| {
         // The first pixel of a cell, defined even where a cell has none.
-        let first = move |cell: u32| (u64::from(cell) * u64::from(size)).div_ceil(u64::from(SIDE));
-        (0..SIDE).map(move |cell| (first(cell + 1) - first(cell)) as f64)
+        let first = move |cell: u32| (u64::from(cell) * u64::from(size)).div_ceil(u64::from(CELLS_PER_SIDE));
+        (0..CELLS_PER_SIDE).map(move |cell| (first(cell + 1) - first(cell)) as f64)
     };
     cell_lengths(film.height).flat_map(|rows| cell_lengths(film.width).map(move |columns| rows * columns)).collect()
 }

@@ -5,7 +5,7 @@
 //! it is (sqrt(A C_p) + sum sqrt(B_i C_i))^2. Rays stand for time, so that the answer is the same on every machine.
 
 use super::cost::with_few_photons;
-use super::pilot::{PhotonWorth, SIDE, mean_and_variance};
+use super::pilot::{CELLS_PER_SIDE, PhotonWorth, mean_and_variance};
 use crate::math::Sampler;
 use crate::spectrum::apply;
 use crate::trace::camera::{PathTracer, take_sample};
@@ -15,7 +15,7 @@ use crate::trace::width::in_lanes;
 use crate::trace::{RAYS_OF_A_LOOK, World};
 
 /// Samples of the pixel in the middle of each cell of the format.
-const SAMPLES: u32 = 8;
+const SAMPLES_PER_PIXEL: u32 = 8;
 /// Cost of looking at light vertices from one surface, in rays of a path with all that belongs to them.
 pub(super) const RESAMPLING_COST: f64 = 0.6;
 /// Share of the squared mean that is added to the square of a pixel: errors in darker pixels are hardly seen.
@@ -113,14 +113,18 @@ fn measure_noise<const N: usize>(
     let film = world.scene.film;
     let to_xyz = film.color_space.to_xyz();
     let mut pixels = Vec::new();
-    for [x, y] in film.whole().middles_of_cells(SIDE) {
-        let values = (0..SAMPLES).map(|number| {
+    for [x, y] in film.whole().middles_of_cells(CELLS_PER_SIDE) {
+        let values = (0..SAMPLES_PER_PIXEL).map(|number| {
             let sampler = Sampler::of_pixel(world.method.seed ^ SEED, [x, y], number);
             apply(&to_xyz, take_sample(&mut tracer, &sampler, [x, y]).rgb).iter().sum::<f64>()
         });
         let values: Vec<f64> = values.filter(|light| light.is_finite()).collect();
         let [mean, variance] = mean_and_variance(values.iter().copied());
-        pixels.push(PixelNoise { mean, variance, cell: film.whole().cell_of(SIDE, [x, y].map(|place| place as u32)) });
+        pixels.push(PixelNoise {
+            mean,
+            variance,
+            cell: film.whole().cell_of(CELLS_PER_SIDE, [x, y].map(|place| place as u32)),
+        });
         if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
             break;
         }
@@ -128,7 +132,7 @@ fn measure_noise<const N: usize>(
     let stats = tracer.walker.stats;
     let rays = stats.rays as f64 + RESAMPLING_COST * stats.resampled as f64;
     let format_pixels = film.whole().pixels() as f64;
-    let rays = rays / (pixels.len() as f64 * f64::from(SAMPLES));
+    let rays = rays / (pixels.len() as f64 * f64::from(SAMPLES_PER_PIXEL));
     PilotNoise { pixels, judges_whole: world.method.judges_the_whole(), format_pixels, rays }
 }
 

@@ -1,6 +1,6 @@
 //! Measures what polarization changes, with a few hundred camera samples and a few thousand photons.
 
-use super::seen_light::{SIDE, SeenLight, for_each_light, with_fewer_photons};
+use super::seen_light::{SAMPLES_PER_SIDE, SeenLight, for_each_light, with_fewer_photons};
 use crate::film::Window;
 use crate::trace::World;
 use crate::trace::method::Polarizing;
@@ -14,7 +14,7 @@ use crate::trace::width::in_lanes_of;
 /// square. One standard error is added for what the copies missed.
 pub fn polarization_error(world: &World) -> f64 {
     let world = with_fewer_photons(world).with_polarization(Polarizing::Compared);
-    let mut grids = SIDES.map(|side| Cells::new(world.scene.film.window(), side));
+    let mut grids = CELLS_PER_SIDE.map(|side| Cells::new(world.scene.film.window(), side));
     let mut all = SeenLight::default();
     let mut record = |pixel, copy, found| {
         grids.iter_mut().for_each(|cells| cells.add(pixel, copy, found));
@@ -27,7 +27,7 @@ pub fn polarization_error(world: &World) -> f64 {
 }
 
 /// Cells along each side of the image: of one sample each, and so large that thin beams send photons to both copies.
-const SIDES: [u32; 2] = [SIDE, SIDE / 4];
+const CELLS_PER_SIDE: [u32; 2] = [SAMPLES_PER_SIDE, SAMPLES_PER_SIDE / 4];
 
 /// The light in each cell of the image, in both copies.
 struct Cells {

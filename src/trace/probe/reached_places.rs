@@ -8,7 +8,7 @@ use crate::trace::photon::PhotonMap;
 use crate::trace::width::in_lanes;
 
 /// Camera samples along each side of the image that find where the camera's paths lead.
-const SIDE: u32 = 24;
+const SAMPLES_PER_SIDE: u32 = 24;
 /// Number of places whose distance to their neighbors is computed.
 const SPACING_PLACES: usize = 256;
 /// Sets these random numbers apart from those of the image.
@@ -20,12 +20,12 @@ pub fn reached_places(world: &World) -> Vec<DVec3> {
         SensorEvent::Place(place) => Some(place),
         _ => None,
     };
-    in_lanes!(&world.method.basis, N => collect_events::<N, _>(world, SIDE, SEED, None, place))
+    in_lanes!(&world.method.basis, N => collect_events::<N, _>(world, SAMPLES_PER_SIDE, SEED, None, place))
 }
 
-/// Whether any photon lies within a pixel of one of the places, if `SIDE` times `SIDE` pixels filled the image.
+/// Whether any photon lies within a pixel of one of the places, if `SAMPLES_PER_SIDE`^2 pixels filled the image.
 pub fn has_photon_near<const N: usize>(world: &World, places: &[DVec3], photons: &PhotonMap<N>) -> bool {
-    let coarse = f64::from(world.scene.film.width) / f64::from(SIDE);
+    let coarse = f64::from(world.scene.film.width) / f64::from(SAMPLES_PER_SIDE);
     places.iter().any(|&place| photons.count_near(place, coarse * pixel_width_at(world, place)) > 0)
 }
 

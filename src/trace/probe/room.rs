@@ -7,12 +7,12 @@ use crate::trace::World;
 use crate::trace::camera::Bounce;
 
 /// Rays that look for the sky from a place, and how many may see it from inside a room: a quarter.
-const LOOKS: u32 = 4;
-const MAX_SKY_LOOKS: usize = 1;
+const SKY_RAYS: u32 = 4;
+const MAX_SKY_HITS: usize = 1;
 /// Share of the bounces' weight inside rooms above which the image shows a room.
 const MIN_INSIDE_SHARE: f64 = 0.25;
 /// Margin around a box, relative to its size; and the multiple of the way to its side beyond which a ray has left it.
-const MARGIN: f64 = 1e-6;
+const BOX_MARGIN: f64 = 1e-6;
 const EXIT_FACTOR: f64 = 1.0 + 1e-6;
 
 /// A room in which bounces begin.
@@ -25,7 +25,7 @@ pub struct Room<'a> {
 
 impl<'a> Room<'a> {
     /// Returns the room of those bounces that begin inside one, if they are enough. `seed` sets random numbers apart.
-    pub fn of(world: &'a World, bounces: Vec<Bounce>, seed: u64) -> Option<Self> {
+    pub fn from_bounces(world: &'a World, bounces: Vec<Bounce>, seed: u64) -> Option<Self> {
         let all = weight(&bounces);
         let is_inside = |(number, bounce): (u32, &Bounce)| {
             is_inside(world, bounce.from, bounce.normal, &Sampler::new(world.method.seed ^ seed, [number, 0], 0))
@@ -87,7 +87,7 @@ impl WallHit {
 /// Returns a box around most of some weighted points, with a small margin.
 pub fn box_around(points: &[(DVec3, f64)], weight: f64) -> Bounds {
     let trimmed = trimmed_bounds(points, weight);
-    let margin = MARGIN * trimmed.size().length();
+    let margin = BOX_MARGIN * trimmed.size().length();
     Bounds { min: trimmed.min - margin, max: trimmed.max + margin }
 }
 
@@ -117,7 +117,7 @@ fn is_inside(world: &World, place: DVec3, normal: DVec3, sampler: &Sampler) -> b
         let ray = Ray { origin, direction: sample_cosine_about(normal, [u, v]) };
         world.scene.nearest(&ray, f64::INFINITY, &|object| !world.is_see_through(object)).is_none()
     };
-    (0..LOOKS).filter(sees_sky).count() <= MAX_SKY_LOOKS
+    (0..SKY_RAYS).filter(sees_sky).count() <= MAX_SKY_HITS
 }
 
 /// Returns a point slightly off a surface: good enough for rays that only look around.

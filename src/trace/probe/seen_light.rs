@@ -14,9 +14,9 @@ use crate::trace::width::in_lanes;
 use crate::trace::{LightPass, MapPasses, RAYS_OF_A_LOOK, World};
 
 /// Camera samples along each side of the image.
-pub const SIDE: u32 = 24;
+pub const SAMPLES_PER_SIDE: u32 = 24;
 /// Parts of the view along each side.
-const PARTS: u32 = 6;
+const PARTS_PER_SIDE: u32 = 6;
 /// Most photons of the light pass and of the map, and the fewest of either, however many rays they take.
 const MAX_PHOTONS: u64 = 2048;
 const MIN_PHOTONS: u64 = 256;
@@ -26,8 +26,8 @@ const MIN_PHOTONS: u64 = 256;
 pub fn most_changed(world: &World) -> f64 {
     let world = with_fewer_photons(world);
     let window = world.scene.film.window();
-    let mut parts = [SeenLight::default(); (PARTS * PARTS) as usize];
-    let mut record = |pixel, _, found| parts[window.cell_of(PARTS, pixel)] += found;
+    let mut parts = [SeenLight::default(); (PARTS_PER_SIDE * PARTS_PER_SIDE) as usize];
+    let mut record = |pixel, _, found| parts[window.cell_of(PARTS_PER_SIDE, pixel)] += found;
     in_lanes!(&world.method.basis, N => for_each_light::<N, Polarized>(&world, 1, &mut record));
     parts.into_iter().map(SeenLight::share).fold(0.0, f64::max)
 }
@@ -63,7 +63,8 @@ impl AddAssign for SeenLight {
 
 /// Renders one or two statistically independent copies of the view, and calls `record` with each result: the pixel
 /// (relative to the window's corner), the index of the copy, and the light found. Takes one camera sample in each of
-/// [`SIDE`] x [`SIDE`] cells until the rays run out; photons are scaled to the same number of pixels.
+/// [`SAMPLES_PER_SIDE`] x [`SAMPLES_PER_SIDE`] cells until the rays run out; photons are scaled to the same number of
+/// pixels.
 pub fn for_each_light<const N: usize, P: Polarization<N>>(
     world: &World,
     copies: usize,
@@ -74,10 +75,10 @@ pub fn for_each_light<const N: usize, P: Polarization<N>>(
     let mut tracer = PathTracer::<N, P>::new(world).with_photons(photons.as_ref());
     let mut samples = 0;
     // In an image of fewer pixels than cells, each pixel is visited several times, with other random numbers each time.
-    let mut looks = [0; (SIDE * SIDE) as usize];
-    for [x, y] in window.middles_of_cells(SIDE) {
+    let mut looks = [0; (SAMPLES_PER_SIDE * SAMPLES_PER_SIDE) as usize];
+    for [x, y] in window.middles_of_cells(SAMPLES_PER_SIDE) {
         let pixel = [(x - window.left) as u32, (y - window.top) as u32];
-        let look = &mut looks[window.cell_of(SIDE, pixel)];
+        let look = &mut looks[window.cell_of(SAMPLES_PER_SIDE, pixel)];
         for copy in 0..copies {
             let before = tracer.walker.stats;
             take_sample(

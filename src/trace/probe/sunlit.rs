@@ -15,7 +15,7 @@ use crate::trace::photon::{LightPaths, can_trace_light_paths};
 use crate::trace::{SkyOpenings, SunlitPlaces, World};
 
 /// Camera samples along each side of the image.
-const SIDE: u32 = 48;
+const SAMPLES_PER_SIDE: u32 = 48;
 /// Most suns and skies that are considered.
 const MAX_SUNS: usize = 4;
 /// Fewest places that tell where paths should start.
@@ -44,7 +44,7 @@ fn sunlit_places(world: &World, openings: &[Opening]) -> Vec<SunlitPlaces> {
     if suns.is_empty() {
         return Vec::new();
     }
-    let bounces = bounces(world, SIDE);
+    let bounces = bounces(world, SAMPLES_PER_SIDE);
     // Where the bounces ended, slightly before the surface, and what light they found there.
     let has_light = |bounce: &&Bounce| bounce.distance.is_finite() && bounce.light.is_finite() && bounce.light > 0.0;
     let end = |bounce: &Bounce| (bounce.from + bounce.direction * (bounce.distance * (1.0 - END_OFFSET)), bounce.light);

@@ -10,7 +10,7 @@ use crate::trace::contribution::FoundBy;
 use crate::trace::width::in_lanes;
 
 /// Camera samples along each side of the image.
-const SIDE: u32 = 64;
+const SAMPLES_PER_SIDE: u32 = 64;
 /// Number of light hits that is enough.
 const MAX_HITS: usize = 2048;
 /// Sets these random numbers apart from those of the image.
@@ -50,9 +50,9 @@ fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
     };
     let mut tracer = PathTracer::<N>::new(world).with_observer(&observer);
     // A stride that is coprime to the number of places visits them all, far ones first.
-    let places = SIDE * SIDE;
+    let places = SAMPLES_PER_SIDE * SAMPLES_PER_SIDE;
     for place in (0..places).map(|i| (i * 1597) % places) {
-        let [x, y] = film.whole().middle_of_cell(SIDE, place);
+        let [x, y] = film.whole().middle_of_cell(SAMPLES_PER_SIDE, place);
         take_sample(&mut tracer, &Sampler::of_pixel(world.method.seed ^ SEED, [x, y], place), [x, y]);
         if hits.borrow().len() >= MAX_HITS {
             break;

@@ -77,13 +77,13 @@ impl<'a, const N: usize> Audit<'a, N> {
                 let ratio = context.beyond_of(lane) / context.incident_of(lane);
                 let share = f64::from(branch.share[lane]) * if branch.crosses { ratio * ratio } else { 1.0 };
                 absorbed[lane] -= share;
-                parted[lane] += if branch.crosses && at.parts { share } else { 0.0 };
+                parted[lane] += if branch.crosses && at.is_parting { share } else { 0.0 };
             }
         }
-        let is_first_parting = at.parts && !path.parted;
+        let is_first_parting = at.is_parting && !path.parted;
         for lane in 0..N {
             // Where lanes part, those that do not cross hand over to those that do.
-            let hands_over = at.parts && parting[lane] == 0.0;
+            let hands_over = at.is_parting && parting[lane] == 0.0;
             if clear && !hands_over {
                 absorbed[lane] = 0.0;
             }

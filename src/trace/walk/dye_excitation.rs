@@ -81,7 +81,7 @@ impl<const N: usize, P: Polarization<N>> DyeExcitation<'_, N, P> {
         match self.excitation {
             None => {
                 let (seen_by, polarization) = (seen_by.clone(), path.polarization);
-                Excitation { source, lanes, seen_by, parted, polarization, dye, draw }
+                Excitation { source, lanes, sensor_draw: seen_by, parted, polarization, dye, draw }
             }
             Some(excitation) => {
                 let brightness =

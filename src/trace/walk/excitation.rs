@@ -18,7 +18,7 @@ pub struct Excitation<const N: usize, P> {
     pub source: SourceId,
     /// The lanes by which it arrives, for a brightness of 1; their meaning, whether they parted, and the polarization.
     pub lanes: Lanes<N>,
-    pub seen_by: Draw<N>,
+    pub sensor_draw: Draw<N>,
     pub parted: bool,
     pub polarization: P,
     /// The dye that the path's light excites: the source, or one whose light excites another dye.
@@ -47,6 +47,6 @@ impl<const N: usize, P> Excitation<N, P> {
     /// Calls `look` with what the sensor sees of the dye at a brightness.
     pub fn with_brightness<T>(&self, brightness: f64, look: impl FnOnce(&ReceivedLight<N>) -> T) -> T {
         let lanes = &(self.lanes * brightness as f32);
-        look(&ReceivedLight { source: self.source, draw: &self.seen_by, lanes, parted: self.parted })
+        look(&ReceivedLight { source: self.source, draw: &self.sensor_draw, lanes, parted: self.parted })
     }
 }

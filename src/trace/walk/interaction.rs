@@ -41,7 +41,7 @@ pub struct Interaction<'a, const N: usize> {
     /// The media on both sides.
     pub boundary: Boundary,
     pub context: ScatterContext<'a, N>,
-    pub parts: bool,
+    pub is_parting: bool,
 }
 
 impl<'a, const N: usize> Interaction<'a, N> {
@@ -68,11 +68,11 @@ impl<'a, const N: usize> Interaction<'a, N> {
             flat,
             boundary,
             context: context(world, draw, wo, normal, uv, present, sides),
-            parts: false,
+            is_parting: false,
         };
         at.context.from_inside = point.normal.dot(wo) < 0.0;
         at.context.is_alone = arriving.parted && present.sum() == 1.0;
-        at.parts = parts(lobes, material, &at.context);
+        at.is_parting = parts_lanes(lobes, material, &at.context);
         at
     }
 
@@ -82,8 +82,8 @@ impl<'a, const N: usize> Interaction<'a, N> {
             return self;
         }
         let context = ScatterContext { normal, ..self.context };
-        let parts = parts(self.lobes, self.material, &context);
-        Self { context, parts, ..self }
+        let is_parting = parts_lanes(self.lobes, self.material, &context);
+        Self { context, is_parting, ..self }
     }
 
     /// Returns the surface as viewed from another direction, on either side. The media stay those of this interaction.
@@ -102,12 +102,12 @@ impl<'a, const N: usize> Interaction<'a, N> {
     /// Returns the surface as the light that excites a dye sees it: white, in lanes that stand for what excites it.
     pub fn as_dye(&self, white: &'a Material<Table>, draw: &'a Draw<N>) -> Self {
         let context = ScatterContext { draw, present: draw.start(), ..self.context };
-        Self { material: white, lobes: Lobes::DIFFUSE_REFLECTION, context, parts: false, ..*self }
+        Self { material: white, lobes: Lobes::DIFFUSE_REFLECTION, context, is_parting: false, ..*self }
     }
 }
 
 /// Returns whether lanes part that cross a surface.
-pub fn parts<const N: usize>(lobes: Lobes, material: &Material<Table>, context: &ScatterContext<N>) -> bool {
+pub fn parts_lanes<const N: usize>(lobes: Lobes, material: &Material<Table>, context: &ScatterContext<N>) -> bool {
     lobes.is_transmissive() && material.parts_lanes(context)
 }
 

@@ -20,7 +20,7 @@ mod walker;
 pub use audit::Audit;
 pub use dye_excitation::{DYE_BRANCH, DyeExcitation};
 pub use excitation::Excitation;
-pub use interaction::{Interaction, SurfaceHit, parts};
+pub use interaction::{Interaction, SurfaceHit, parts_lanes};
 pub use pass_through::{Occluders, SeenThrough, VisibilityTest};
 pub use path::{ObjectSet, Path, PathKind, ScatterSample};
 pub use polarization::{FoundLight, PassThrough, Polarization, SeenPhoton};

@@ -150,8 +150,8 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     #[inline(always)]
     fn limit_degree(&mut self, i: usize) {
         let squared = self.degree_squared(i);
-        let within = 1.0 / if squared > 1.0 { squared } else { 1.0 }.sqrt();
-        self.weights[i][1..].iter_mut().for_each(|part| part[0] *= within);
+        let scale = 1.0 / if squared > 1.0 { squared } else { 1.0 }.sqrt();
+        self.weights[i][1..].iter_mut().for_each(|part| part[0] *= scale);
     }
 
     /// Passes a surface, and sets `share` to what leaves of the path's light.
@@ -260,9 +260,9 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         let value = value.unwrap_or_else(|| bsdf_value(at, query.wi));
         let exitant = Self::set_mueller(at, query, value, &mut mueller);
         if let Some(folded) = Self::folded_to(at, incoming) {
-            let mut left = value;
-            after.pass_surface(&mueller, &exitant, &mut left);
-            let folded_light = self.folded_light(at, folded, [value, left], bsdf_cos);
+            let mut leaving = value;
+            after.pass_surface(&mueller, &exitant, &mut leaving);
+            let folded_light = self.folded_light(at, folded, [value, leaving], bsdf_cos);
             after.merge_folded(self, &folded_light, -wi, at.flat);
             return after;
         }
@@ -376,16 +376,18 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
             let value = match branch.pdf {
                 None => branch.share,
                 // Where lanes part, a branch's share is that of its own lanes, and its density that of all lanes.
-                Some(pdf) if at.flat == at.context.normal && !(at.parts && branch.crosses) => branch.share * pdf as f32,
+                Some(pdf) if at.flat == at.context.normal && !(at.is_parting && branch.crosses) => {
+                    branch.share * pdf as f32
+                }
                 Some(_) => bsdf_value(at, query.wi),
             };
             let exitant = Self::set_mueller(at, query, value, &mut transfer.mueller);
             transfer.fold_plane = drawn.map(|_| at.flat);
             transfer.folded_light = None;
             if let Some(folded) = Self::folded_to(at, incoming) {
-                let mut left = value;
-                self.find_change(&transfer.mueller, &exitant, &mut transfer.change, &mut left);
-                let folded_light = self.folded_light(at, folded, [value, left], &mut branch.share);
+                let mut leaving = value;
+                self.find_change(&transfer.mueller, &exitant, &mut transfer.change, &mut leaving);
+                let folded_light = self.folded_light(at, folded, [value, leaving], &mut branch.share);
                 transfer.folded_light = Some(Box::new(folded_light));
                 continue;
             }

@@ -206,12 +206,12 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         let weight = |number: usize| outgoing.weight(&self.branches[number]);
         let u = sampler.get_random_4d(outgoing.path.key, CHOICE);
         let total: f64 = (0..self.branches.len()).map(weight).sum();
-        let mut left = u[0] * total;
+        let mut remaining = u[0] * total;
         let mut bright = (0..self.branches.len()).filter(|&number| weight(number) != 0.0);
         let Some(last) = bright.clone().next_back() else { return };
         let chosen = bright.find(|&number| {
-            left -= weight(number);
-            left < 0.0
+            remaining -= weight(number);
+            remaining < 0.0
         });
         let number = chosen.unwrap_or(last);
         if let Some(factor) = play_roulette(total, roulette, outgoing.path.vertices, || u[1]) {
@@ -290,7 +290,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
     #[inline]
     fn weight(&self, branch: &Branch<N>) -> f64 {
         let Self { path, at, .. } = self;
-        let shares = at.context.draw.shares(path.parted || (at.parts && branch.crosses));
+        let shares = at.context.draw.shares(path.parted || (at.is_parting && branch.crosses));
         path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
     }
 
@@ -314,9 +314,9 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
     ) {
         let Self { world, path, at, .. } = self;
         if let Some(through) = self.through.filter(|_| number + 1 == self.branches) {
-            let beyond = path.transmitted_part(at.point, through);
-            let (throughput, key) = (beyond.throughput.scaled(factor), path.key.child(number));
-            *pending.add(|| beyond) = Path { throughput, key, ..beyond };
+            let passed_path = path.transmitted_part(at.point, through);
+            let (throughput, key) = (passed_path.throughput.scaled(factor), path.key.child(number));
+            *pending.add(|| passed_path) = Path { throughput, key, ..passed_path };
             return;
         }
         let (wide, crosses) = (branch.pdf.is_some(), branch.crosses);
@@ -331,7 +331,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         next.throughput = path.throughput.through(branch.share).scaled(factor);
         (next.eta_scale, next.aiming_factor) = (path.eta_scale * branch.eta_scale, self.aiming_factor(branch));
         next.media = if crosses { path.media.after_crossing(&at.boundary) } else { path.media };
-        next.parted = path.parted || (at.parts && crosses);
+        next.parted = path.parted || (at.is_parting && crosses);
         next.key = path.key.child(number);
         (next.vertices, next.hidden_vertices) = (path.vertices, path.hidden_vertices);
         next.length = path.length;
