@@ -193,8 +193,8 @@ impl<'a> Counted<'a> {
         matches!(self, Self::Mirrored { .. })
     }
 
-    /// Returns the factor on light of a source that surfaces sent on `bounces` times. It may be negative, where a filter
-    /// is.
+    /// Returns the factor on light of a source that surfaces sent on `bounces` times. It may be negative, where a
+    /// filter is.
     #[inline]
     pub fn factor(&self, source: Option<LightId>, bounces: u32) -> f64 {
         match *self {

@@ -5,7 +5,8 @@
 //!
 //! - E is an estimate, from few replicates.
 //! - The error that was drawn varies around E. With independent pixels it hardly does, since there are many. But pixels
-//!   share light vertices and photons, so that a whole image may be too bright, and one pixel may make most of the noise.
+//!   share light vertices and photons, so that a whole image may be too bright, and one pixel may make most of the
+//!   noise.
 //!
 //! Both depend on how many numbers the errors consist of. For normal errors, |e_r|^2 has the variance g^2 = 2 tr(C^2),
 //! where C is the covariance of all pixels. The products of two replicates estimate that: the mean of (e_r . e_s)^2 is

@@ -72,8 +72,8 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// Returns the state after a surface that lets light pass through, and sets `straight` to the share that passes.
     fn pass(self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self;
 
-    /// Converts the shares of branches to those of the path's light, before branches are chosen, and adds to `transfers`
-    /// how the state changes along each of them. Adds nothing if that can wait until one is chosen.
+    /// Converts the shares of branches to those of the path's light, before branches are chosen, and adds to
+    /// `transfers` how the state changes along each of them. Adds nothing if that can wait until one is chosen.
     fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], transfers: &mut Slots<Self::RowTransfer>);
 
     /// Becomes the state along a branch, given the state `before`. `split` has computed `transfer` for branches that
