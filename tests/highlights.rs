@@ -71,6 +71,28 @@ fn a_mirroring_ball_shows_the_light_of_the_sun_wherever_it_stands_however_small_
 }
 
 #[test]
+fn balls_behind_panes_and_in_mirrors_show_the_light_of_the_sun() {
+    let ball = "mirror.reflectance = 0.8";
+    // The sun is behind the pane, and behind the mirror: the ball does not see them before it.
+    let pane = "[material.pane]\nthin.index = 1.5\n[[object]]\nmaterial = \"pane\"\n\
+                shape.quad = { center = [0, 0, 2], u = [1.5, 0, 0], v = [0, 1.5, 0] }\n";
+    let behind_pane = view("", ball, &sun([0.9, 0.2, -0.3], 0.533)) + pane;
+    let mirror = "[material.mirror]\nmirror.reflectance = 0.9\n[[object]]\nmaterial = \"mirror\"\n\
+                  shape.quad = { center = [0, 0, 5], u = [1.5, 0, -1.5], v = [0, 1.5, 0] }\n";
+    let in_mirror = view("", ball, &sun([0.3, 1.0, 0.8], 0.533)) + mirror;
+    let in_mirror = in_mirror.replace("[0, 0, 5], look_at = [0, 0, 0]", "[-5, 0, 5], look_at = [0, 0, 5]");
+    // A pane reflects (n - 1)^2 / (n + 1)^2 = 0.04 at each of its faces, back and forth.
+    for (text, bounces, factor) in [(behind_pane, 1, 0.96 / 1.04), (in_mirror, 2, 0.9)] {
+        let (method, mean) = films(&text, 0..32);
+        let found: Vec<u32> = method.highlights.iter().map(|highlight| highlight.bounces).collect();
+        assert_eq!(found, [bounces]);
+        let expected = mirrored(0.8).map(|band| band * factor);
+        mean.assert_near(expected, 6, &format!("{bounces} bounces"));
+        assert!(mean.worst_relative_error(expected) < 0.004, "{bounces}: {mean:?}");
+    }
+}
+
+#[test]
 fn every_filter_shows_all_light_of_a_highlight() {
     let filters = ["tent", "gaussian", "blackman-harris", "mitchell"];
     for filter in filters {

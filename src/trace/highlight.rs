@@ -18,6 +18,8 @@ use crate::math::{BELOW_ONE, DMat2, DVec2, Distribution2d};
 pub struct Highlight {
     /// The light that is mirrored.
     pub light: LightId,
+    /// The number of surfaces that mirror it one after another.
+    pub bounces: u32,
     /// The center of the ellipse, in pixels from the top left corner of the format.
     pub center: [f64; 2],
     /// Two conjugate radii of the ellipse, in pixels: a circle's radii after the linear map that makes it the ellipse.
@@ -102,9 +104,9 @@ impl SeenHighlight {
         (cells.total() > 0.0).then(|| Self { highlight: highlight.clone(), cells })
     }
 
-    /// The light that is mirrored.
-    pub fn light(&self) -> LightId {
-        self.highlight.light
+    /// Returns whether it may show light of a source that surfaces sent on `bounces` times.
+    fn shows(&self, light: LightId, bounces: u32) -> bool {
+        (self.highlight.light, self.highlight.bounces) == (light, bounces)
     }
 
     /// Samples a point of the film, in pixels.
@@ -155,7 +157,7 @@ pub(super) enum Counted<'a> {
     /// that the highlights mirror counts less.
     Ordinary { film: DVec2, pdf: f64, highlights: &'a [SeenHighlight] },
     /// Light of a sample that was aimed at a highlight: only what it mirrors, by this factor.
-    Mirrored { light: LightId, factor: f64 },
+    Mirrored { light: LightId, bounces: u32, factor: f64 },
 }
 
 impl<'a> Counted<'a> {
@@ -177,12 +179,13 @@ impl<'a> Counted<'a> {
         filter: Filter,
         film: DVec2,
         offset: DVec2,
-        light: LightId,
+        aim: &SeenHighlight,
         highlights: &[SeenHighlight],
     ) -> Option<Self> {
+        let Highlight { light, bounces, .. } = aim.highlight;
         let value = filter.value(offset);
-        let factor = value / (density(filter, offset) + density_of(highlights, light, film));
-        (value != 0.0).then_some(Self::Mirrored { light, factor })
+        let factor = value / (density(filter, offset) + density_of(highlights, light, bounces, film));
+        (value != 0.0).then_some(Self::Mirrored { light, bounces, factor })
     }
 
     /// Whether the sample was aimed at a highlight.
@@ -197,10 +200,10 @@ impl<'a> Counted<'a> {
         match *self {
             Self::Ordinary { highlights: [], .. } => 1.0,
             Self::Ordinary { film, pdf, highlights } => match source {
-                Some(light) if bounces == 1 => pdf / (pdf + density_of(highlights, light, film)),
-                _ => 1.0,
+                Some(light) => pdf / (pdf + density_of(highlights, light, bounces, film)),
+                None => 1.0,
             },
-            Self::Mirrored { light, factor } if source == Some(light) && bounces == 1 => factor,
+            Self::Mirrored { light, bounces: mirrors, factor } if (source, bounces) == (Some(light), mirrors) => factor,
             Self::Mirrored { .. } => 0.0,
         }
     }
@@ -211,7 +214,8 @@ fn density(filter: Filter, offset: DVec2) -> f64 {
     filter.value(offset).abs() / filter.absolute_integral()
 }
 
-/// Returns the density of the samples that are aimed at highlights of a light, one at each, per square pixel.
-fn density_of(highlights: &[SeenHighlight], light: LightId, film: DVec2) -> f64 {
-    highlights.iter().filter(|highlight| highlight.light() == light).map(|highlight| highlight.pdf(film)).sum()
+/// Returns the density of the samples that are aimed at highlights of a light after so many bounces, one at each, per
+/// square pixel.
+fn density_of(highlights: &[SeenHighlight], light: LightId, bounces: u32, film: DVec2) -> f64 {
+    highlights.iter().filter(|highlight| highlight.shows(light, bounces)).map(|highlight| highlight.pdf(film)).sum()
 }

@@ -23,7 +23,7 @@ pub fn add_aimed<const N: usize, P: Polarization<N>>(
     for highlight in highlights {
         let film = highlight.sample([u, v]);
         let offset = offset(film, pixel);
-        let counted = Counted::aimed(world.scene.film.filter, film, offset, highlight.light(), highlights);
+        let counted = Counted::aimed(world.scene.film.filter, film, offset, highlight, highlights);
         if let Some(counted) = counted {
             let path = Path::from_camera(world, draw, world.scene.camera.ray(film));
             tracer.sensor.set_counted(counted);

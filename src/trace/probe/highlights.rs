@@ -11,7 +11,7 @@ use crate::film::Filter;
 use crate::light::{Environment, Light, LightId};
 use crate::material::{Lobes, Material, reflect};
 use crate::math::{Cone, DMat2, DVec2, DVec3, Frame};
-use crate::scene::RayEnds;
+use crate::scene::{Hit, RayEnds};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Table;
 use crate::trace::highlight::Highlight;
@@ -59,7 +59,12 @@ pub fn small_highlights(world: &World) -> Vec<Highlight> {
     if lights.is_empty() {
         return Vec::new();
     }
-    Search::new(world, slopes).highlights(&lights)
+    let (film, mut found) = (scene.film, Vec::new());
+    let step = f64::from(film.width.max(film.height)) / SEARCH_POINTS;
+    for prefix in PREFIXES {
+        Search { world, prefix, slopes: &slopes, step }.add_highlights(&lights, &mut found);
+    }
+    found
 }
 
 /// Returns the width of a material's slopes, 0 if any part of it is smooth; `None` if it mirrors nothing sharply.
@@ -141,9 +146,32 @@ fn bright_part(sky: &Environment<Table>) -> Option<Place> {
     Some(Place::Far { direction: axis, sin: (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt() })
 }
 
+/// What becomes of a ray at a surface before it meets the one that mirrors a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Event {
+    /// It passes straight through.
+    Pass,
+    /// A smooth surface mirrors it.
+    Mirror,
+}
+
+/// What rays may have behind them before they meet the surface that mirrors a light: up to two panes of two faces each,
+/// or one mirror, behind which there may be a pane.
+const PREFIXES: [&[Event]; 7] = {
+    use Event::{Mirror, Pass};
+    [&[], &[Pass], &[Pass; 2], &[Pass; 3], &[Pass; 4], &[Mirror], &[Pass, Mirror]]
+};
+
+/// An object and the mirror in which it is seen, if any.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct SeenObject {
+    object: u32,
+    mirror: Option<u32>,
+}
+
 /// What a point of the film shows.
 struct VisiblePoint {
-    object: u32,
+    seen: SeenObject,
     point: SurfacePoint,
     /// The unit vector to the camera, and the unit normal by which the surface mirrors.
     wo: DVec3,
@@ -173,25 +201,25 @@ struct Mismatch {
 
 struct Search<'a> {
     world: &'a World,
+    /// What rays have behind them.
+    prefix: &'static [Event],
     /// The width of each material's slopes; `None` if it mirrors nothing sharply.
-    slopes: Vec<Option<f64>>,
+    slopes: &'a [Option<f64>],
     /// Distance of the points on the film at which it begins, in pixels.
     step: f64,
 }
 
 impl<'a> Search<'a> {
-    fn new(world: &'a World, slopes: Vec<Option<f64>>) -> Self {
-        let film = world.scene.film;
-        Self { world, slopes, step: f64::from(film.width.max(film.height)) / SEARCH_POINTS }
-    }
-
-    fn highlights(&self, lights: &[SmallLight]) -> Vec<Highlight> {
+    /// Adds the highlights of some lights that are not known yet.
+    fn add_highlights(&self, lights: &[SmallLight], found: &mut Vec<Highlight>) {
         let film = self.world.scene.film;
         let [columns, rows] = [film.width, film.height].map(|size| (f64::from(size) / self.step).ceil() as usize);
         let film_point = |i: usize| DVec2::new((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5) * self.step;
         let visible_points: Vec<Option<VisiblePoint>> =
             (0..columns * rows).map(|i| self.visible_point(film_point(i))).collect();
-        let mut found: Vec<Highlight> = Vec::new();
+        if visible_points.iter().all(Option::is_none) {
+            return;
+        }
         for light in lights {
             let squared_mismatch = |visible: &VisiblePoint| visible.mismatch(light).difference.length_squared();
             let squared_mismatches: Vec<f64> =
@@ -202,7 +230,7 @@ impl<'a> Search<'a> {
                 let is_better_neighbor = |j: usize| {
                     j != i
                         && squared_mismatches[j] < squared_mismatches[i]
-                        && visible_points[j].as_ref().is_some_and(|other| other.object == center.object)
+                        && visible_points[j].as_ref().is_some_and(|other| other.seen == center.seen)
                 };
                 let [left, top] = [x, y].map(|at| at.saturating_sub(1));
                 let [right, bottom] = [(x + 1).min(columns - 1), (y + 1).min(rows - 1)];
@@ -210,31 +238,49 @@ impl<'a> Search<'a> {
             };
             for i in (0..squared_mismatches.len()).filter(is_nearest) {
                 let highlight =
-                    visible_points[i].as_ref().and_then(|visible| self.follow(film_point(i), visible.object, light));
+                    visible_points[i].as_ref().and_then(|visible| self.follow(film_point(i), visible.seen, light));
                 found.extend(highlight.filter(|new| !found.iter().any(|known| is_same(known, new))));
                 if found.len() == MAX_HIGHLIGHTS {
-                    return found;
+                    return;
                 }
             }
         }
-        found
     }
 
-    /// Returns what a point of the film shows; `None` if that mirrors nothing sharply.
+    /// Returns what a point of the film shows; `None` if that mirrors nothing sharply, or if the way there is another.
     fn visible_point(&self, film: DVec2) -> Option<VisiblePoint> {
         let scene = &self.world.scene;
-        let ray = scene.camera.ray(film);
-        let hit = scene.intersect_seen(&ray, None)?;
-        let slopes = self.slopes[scene.objects[hit.object as usize].material as usize]?;
+        let slopes_of = |hit: Hit| self.slopes[scene.objects[hit.object as usize].material as usize];
+        let mut ray = scene.camera.ray(film);
+        let mut hit = scene.intersect_seen(&ray, None)?;
+        let mut mirror = None;
+        for event in self.prefix {
+            let wo = -ray.direction;
+            let SurfaceHit { point, .. } = SurfaceHit::new(self.world, &ray, hit);
+            let direction = match event {
+                Event::Pass => self.world.is_see_through(hit.object).then_some(ray.direction)?,
+                Event::Mirror => {
+                    slopes_of(hit).filter(|slopes| *slopes == 0.0)?;
+                    mirror = Some(hit.object);
+                    reflect(wo, shading::normals(&point, wo)[1])
+                }
+            };
+            ray = point.leave(direction);
+            hit = match mirror {
+                None => scene.intersect_seen(&ray, Some(hit.primitive()))?,
+                Some(_) => scene.intersect_from(&ray, Some(hit.primitive()))?,
+            };
+        }
+        let slopes = slopes_of(hit)?;
         let (wo, SurfaceHit { point, .. }) = (-ray.direction, SurfaceHit::new(self.world, &ray, hit));
         let [_, normal] = shading::normals(&point, wo);
-        Some(VisiblePoint { object: hit.object, point, wo, normal, slopes })
+        Some(VisiblePoint { seen: SeenObject { object: hit.object, mirror }, point, wo, normal, slopes })
     }
 
     /// Follows an object's mirror image of a light from a point of the film to its center. Returns the highlight there
     /// if it is small.
-    fn follow(&self, start: DVec2, object: u32, light: &SmallLight) -> Option<Highlight> {
-        let object_point = |film: DVec2| self.visible_point(film).filter(|visible| visible.object == object);
+    fn follow(&self, start: DVec2, seen: SeenObject, light: &SmallLight) -> Option<Highlight> {
+        let object_point = |film: DVec2| self.visible_point(film).filter(|visible| visible.seen == seen);
         let (mut film, mut visible) = (start, object_point(start)?);
         for _ in 0..MAX_NEWTON_STEPS {
             let Mismatch { target, difference } = visible.mismatch(light);
@@ -276,10 +322,10 @@ impl<'a> Search<'a> {
     }
 
     /// Returns how much wider an ellipse about a point of the film must be to contain the mirror image of a light.
-    fn margin(&self, film: DVec2, object: u32, light: &SmallLight, radii: DMat2) -> f64 {
+    fn margin(&self, film: DVec2, center: &VisiblePoint, light: &SmallLight, radii: DMat2) -> f64 {
         let is_lit = |visible: VisiblePoint| {
             let ApparentLight { sin, .. } = light.seen_from(visible.point.position);
-            visible.object == object && visible.mismatch(light).difference.length() < sin
+            visible.seen == center.seen && visible.mismatch(light).difference.length() < sin
         };
         let contains_image = |margin: &&f64| {
             (0..RIM_POINTS).all(|i| {
@@ -302,7 +348,7 @@ impl<'a> Search<'a> {
         let ApparentLight { direction, sin, distance } = light.seen_from(visible.point.position);
         let width = self.width(visible, light);
         let (reach, peak) = match visible.slopes {
-            0.0 => (self.margin(film, visible.object, light, inverse_jacobian * width), 0.0),
+            0.0 => (self.margin(film, visible, light, inverse_jacobian * width), 0.0),
             _ => (ROUGH_HALF_WIDTH, ROUGH_HALF_WIDTH * ROUGH_HALF_WIDTH),
         };
         let radii = inverse_jacobian * (reach * width);
@@ -319,6 +365,7 @@ impl<'a> Search<'a> {
         let is_occluded = world.scene.is_occluded_by(&ray, distance, ends, &Cell::new(None), &counts);
         (!is_occluded).then(|| Highlight {
             light: light.id,
+            bounces: 1 + self.prefix.iter().filter(|event| **event == Event::Mirror).count() as u32,
             center: film.to_array(),
             radii: radii.to_cols_array_2d(),
             peak,
@@ -328,5 +375,7 @@ impl<'a> Search<'a> {
 
 /// Whether two searches ended at the same highlight.
 fn is_same(known: &Highlight, new: &Highlight) -> bool {
-    known.light == new.light && known.contains(new.center.into()) && new.contains(known.center.into())
+    (known.light, known.bounces) == (new.light, new.bounces)
+        && known.contains(new.center.into())
+        && new.contains(known.center.into())
 }
