@@ -4,6 +4,8 @@
 //! cargo test --test all highlights::
 //! ```
 
+use std::collections::BTreeSet;
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use abbe::Options;
@@ -49,8 +51,7 @@ fn mirrored(reflectance: f64) -> [f64; 3] {
     [1.0, 2.0, 0.5].map(|color| reflectance * SUN * color * share)
 }
 
-/// Renders a text with so many samples that even those which miss the light are many: one in 160, at the
-/// edge of the sun.
+/// Renders a text with so many samples that even those which just miss the light are several.
 fn films(text: &str, seeds: Range<u64>) -> (Method, Mean) {
     let scene = scene(text);
     let method = Method { samples: 256, ..plan(&scene).method };
@@ -62,10 +63,10 @@ fn films(text: &str, seeds: Range<u64>) -> (Method, Mean) {
 fn a_mirroring_ball_shows_the_light_of_the_sun_wherever_it_stands_however_small_it_is() {
     let suns = [([0.3, 1.0, 0.8], 0.533), ([-0.6, 0.1, 1.0], 0.05), ([1.0, 0.4, 0.2], 1e-3), ([0.9, 0.2, -0.3], 0.533)];
     for (toward, diameter) in suns {
-        let (method, mean) = films(&view("", "mirror.reflectance = 0.8", &sun(toward, diameter)), 0..32);
+        let (method, mean) = films(&view("", "mirror.reflectance = 0.8", &sun(toward, diameter)), 0..64);
         assert_eq!(method.highlights.len(), 1, "{toward:?}");
         mean.assert_near(mirrored(0.8), 3 * suns.len(), &format!("toward {toward:?}, {diameter} degrees"));
-        // 8192 samples of each pixel: without aim, one in 3000 or fewer would hit the sun.
+        // 16384 samples of each pixel: without aim, one in 3000 or fewer would hit the sun.
         assert!(mean.worst_relative_error(mirrored(0.8)) < 0.004, "toward {toward:?}: {:?}", mean.error);
     }
 }
@@ -89,6 +90,68 @@ fn balls_behind_panes_and_in_mirrors_show_the_light_of_the_sun() {
         let expected = mirrored(0.8).map(|band| band * factor);
         mean.assert_near(expected, 6, &format!("{bounces} bounces"));
         assert!(mean.worst_relative_error(expected) < 0.004, "{bounces}: {mean:?}");
+    }
+}
+
+/// Where a ray leaves a ball of glass: its deflection, and its share of the light.
+struct Ejected {
+    deflection: f64,
+    share: f64,
+}
+
+/// Follows a ray that meets a ball of index 1.5 at an angle of incidence. It is mirrored at the first surface if
+/// `inside` is `None`, and that many times inside otherwise.
+fn ejected(incidence: f64, inside: Option<i32>) -> Ejected {
+    let refraction = (incidence.sin() / 1.5).asin();
+    let (sum, difference) = (incidence + refraction, incidence - refraction);
+    let (s, p) = (difference.sin() / sum.sin(), difference.tan() / sum.tan());
+    let reflected = 0.5 * (s * s + p * p);
+    // Each polarization keeps to itself inside, and is reflected by its own share each time.
+    let through = |inside| 0.5 * [s * s, p * p].map(|r| (1.0 - r) * (1.0 - r) * r.powi(inside)).iter().sum::<f64>();
+    match inside {
+        None => Ejected { deflection: PI - 2.0 * incidence, share: reflected },
+        Some(inside) => {
+            let turn = f64::from(inside) * (PI - 2.0 * refraction);
+            let deflection = 2.0 * difference + turn;
+            Ejected { deflection: deflection.min(2.0 * PI - deflection), share: through(inside) }
+        }
+    }
+}
+
+/// Returns how much of the film a ball of glass fills with the sun, per steradian of the sun and square of the radius.
+/// `away` is the angle between the direction of sight and that to the sun.
+fn seen_through_glass(away: f64, inside: Option<i32>) -> f64 {
+    // Sums over all intervals of incidence in which the deflection passes the angle.
+    let steps = 1_000_000;
+    let at = |i: i32| f64::from(i) / f64::from(steps) * 0.5 * PI;
+    let areas = (1..steps - 1).map(|i| {
+        let [a, b] = [at(i), at(i + 1)];
+        let [from, to] = [a, b].map(|incidence| ejected(incidence, inside).deflection);
+        let is_there = (from - away) * (to - away) <= 0.0;
+        let middle = 0.5 * (a + b);
+        let film = middle.sin() * (b.sin() - a.sin());
+        if is_there { ejected(middle, inside).share * film / (away.sin() * (to - from).abs()) } else { 0.0 }
+    });
+    areas.sum()
+}
+
+#[test]
+fn balls_of_glass_show_the_sun_behind_them_and_what_they_mirror_inside() {
+    // The camera looks along -z.
+    for (toward, max_bounces, chains) in [([0.5, 0.3, -0.8], 2, vec![1, 2]), ([0.19, 0.19, 1.0], 3, vec![1, 3])] {
+        let render = format!("render = {{ samples = 16, max_bounces = {max_bounces}, polarization = \"on\" }}");
+        let text = view("", "dielectric.index = 1.5", &sun(toward, 0.2)).replace("render = { samples = 16 }", &render);
+        let (method, mean) = films(&text, 0..64);
+        let found: BTreeSet<u32> = method.highlights.iter().map(|highlight| highlight.bounces).collect();
+        assert_eq!(found, BTreeSet::from_iter(chains.iter().copied()), "{:?}", method.highlights);
+        let [x, y, z]: [f64; 3] = toward;
+        let away = (-z / (x * x + y * y + z * z).sqrt()).acos();
+        let ways = [None, Some(0), Some(1)].into_iter().take(max_bounces as usize);
+        let area: f64 = ways.map(|inside| seen_through_glass(away, inside)).sum();
+        let share = area * RADIUS * RADIUS / (HEIGHT * HEIGHT);
+        let expected = [1.0, 2.0, 0.5].map(|color| SUN * color * share);
+        mean.assert_near(expected, 6, &format!("{toward:?}"));
+        assert!(mean.worst_relative_error(expected) < 0.005, "{toward:?}: {mean:?}");
     }
 }
 

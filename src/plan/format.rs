@@ -55,8 +55,8 @@ pub(super) fn describe_effort(times: Effort) -> String {
 pub(super) fn highlights(found: &[Highlight]) -> Option<String> {
     let what = match found.len() {
         0 => return None,
-        1 => "1 mirror image of a light is".into(),
-        many => format!("{many} mirror images of lights are"),
+        1 => "1 highlight is".into(),
+        many => format!("{many} highlights are"),
     };
     Some(format!("{what} smaller than a pixel: some samples of its pixels are aimed there"))
 }

@@ -1,25 +1,28 @@
-//! Finds the highlights on the film that are smaller than a pixel, where surfaces mirror small lights to the camera.
+//! Finds the highlights on the film that are smaller than a pixel, where surfaces mirror or refract small lights to the
+//! camera.
 //!
-//! A smooth surface mirrors a light to the camera where its normal halves the angle between both directions. The search
-//! starts where that is nearly so, and follows the film to such a point by Newton's method, as manifold exploration
-//! does along longer paths (Jakob & Marschner 2012, *Manifold Exploration*).
+//! Rays from the film are followed along a few chains of surfaces. The search starts where the last surface nearly
+//! sends the ray to a light, and follows the film to such a point by Newton's method, as manifold exploration does
+//! (Jakob & Marschner 2012, *Manifold Exploration*).
 
 use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 
+use super::specular_chain::{CHAINS, ChainEnd, SpecularChain};
 use crate::film::Filter;
 use crate::light::{Environment, Light, LightId};
-use crate::material::{Lobes, Material, reflect};
+use crate::material::{Lobes, Material};
 use crate::math::{Cone, DMat2, DVec2, DVec3, Frame};
-use crate::scene::{Hit, RayEnds};
-use crate::shape::{Ball, SurfacePoint};
+use crate::scene::RayEnds;
+use crate::shape::Ball;
 use crate::spectrum::Table;
 use crate::trace::highlight::Highlight;
-use crate::trace::walk::{SurfaceHit, shading};
 use crate::trace::{Transport, World};
 
-/// Points along the longer side of the format at which the search begins.
+/// Points along the longer side of the format at which the search for what a first surface mirrors begins, and how
+/// much wider apart they are for longer chains of surfaces.
 const SEARCH_POINTS: f64 = 128.0;
+const LONG_CHAIN_STEP: f64 = 2.0;
 /// Largest number of lights whose mirror images are looked for, and of highlights that are kept.
 const MAX_LIGHTS: usize = 16;
 const MAX_HIGHLIGHTS: usize = 1024;
@@ -39,7 +42,7 @@ const MAX_AREA: f64 = 1.0;
 const MAX_HALF_AXIS: f64 = 16.0;
 /// How much wider than the mirror image of a light its ellipse may be. Film and directions are not quite in proportion,
 /// so the image is no ellipse. The first of these is taken beyond which a surface mirrors nothing of the light.
-const MARGINS: [f64; 9] = [1.003, 1.006, 1.012, 1.025, 1.05, 1.1, 1.2, 1.4, 1.8];
+const MARGINS: [f64; 11] = [1.0003, 1.001, 1.003, 1.006, 1.012, 1.025, 1.05, 1.1, 1.2, 1.4, 1.8];
 /// Points on the rim of an ellipse where that is looked at.
 const RIM_POINTS: u32 = 16;
 /// Half width of the ellipse of a rough surface's highlight, in widths of its slopes. With this half width W, a
@@ -61,8 +64,10 @@ pub fn small_highlights(world: &World) -> Vec<Highlight> {
     }
     let (film, mut found) = (scene.film, Vec::new());
     let step = f64::from(film.width.max(film.height)) / SEARCH_POINTS;
-    for prefix in PREFIXES {
-        Search { world, prefix, slopes: &slopes, step }.add_highlights(&lights, &mut found);
+    for (i, events) in CHAINS.into_iter().enumerate() {
+        let chain = SpecularChain { world, events, slopes: &slopes };
+        let step = if i == 0 { step } else { LONG_CHAIN_STEP * step };
+        Search { chain, step }.add_highlights(&lights, &mut found);
     }
     found
 }
@@ -146,65 +151,28 @@ fn bright_part(sky: &Environment<Table>) -> Option<Place> {
     Some(Place::Far { direction: axis, sin: (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt() })
 }
 
-/// What becomes of a ray at a surface before it meets the one that mirrors a light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Event {
-    /// It passes straight through.
-    Pass,
-    /// A smooth surface mirrors it.
-    Mirror,
-}
-
-/// What rays may have behind them before they meet the surface that mirrors a light: up to two panes of two faces each,
-/// or one mirror, behind which there may be a pane.
-const PREFIXES: [&[Event]; 7] = {
-    use Event::{Mirror, Pass};
-    [&[], &[Pass], &[Pass; 2], &[Pass; 3], &[Pass; 4], &[Mirror], &[Pass, Mirror]]
-};
-
-/// An object and the mirror in which it is seen, if any.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct SeenObject {
-    object: u32,
-    mirror: Option<u32>,
-}
-
-/// What a point of the film shows.
-struct VisiblePoint {
-    seen: SeenObject,
-    point: SurfacePoint,
-    /// The unit vector to the camera, and the unit normal by which the surface mirrors.
-    wo: DVec3,
-    normal: DVec3,
-    /// The width of the surface's slopes, 0 if it is smooth.
-    slopes: f64,
-}
-
-impl VisiblePoint {
-    /// Returns how far the surface is from mirroring a light: the difference of the two vectors that would be equal.
-    /// They are the mirrored direction and that of the light or, on a rough surface, the facet's normal and that of the
-    /// surface.
-    fn mismatch(&self, light: &SmallLight) -> Mismatch {
-        let ApparentLight { direction, .. } = light.seen_from(self.point.position);
-        if self.slopes == 0.0 {
-            return Mismatch { target: direction, difference: reflect(self.wo, self.normal) - direction };
+impl SmallLight {
+    /// Returns how far a surface is from sending its light to the camera.
+    fn mismatch(&self, end: &ChainEnd) -> Mismatch {
+        let ApparentLight { direction, .. } = self.seen_from(end.point.position);
+        if end.slopes == 0.0 {
+            return Mismatch { target: direction, difference: end.outgoing - direction };
         }
-        let half = (self.wo + direction).normalize_or_zero();
-        Mismatch { target: self.normal, difference: half - self.normal }
+        let half = (end.wo + direction).normalize_or_zero();
+        Mismatch { target: end.normal, difference: half - end.normal }
     }
 }
 
+/// How far a surface is from sending the light of a source to the camera: the difference of two unit vectors, and the
+/// one that the other should be equal to. They are the direction of the light and the one in which a smooth surface
+/// sends the ray, or the normal of a rough surface and that of the facet which mirrors the light.
 struct Mismatch {
     target: DVec3,
     difference: DVec3,
 }
 
 struct Search<'a> {
-    world: &'a World,
-    /// What rays have behind them.
-    prefix: &'static [Event],
-    /// The width of each material's slopes; `None` if it mirrors nothing sharply.
-    slopes: &'a [Option<f64>],
+    chain: SpecularChain<'a>,
     /// Distance of the points on the film at which it begins, in pixels.
     step: f64,
 }
@@ -212,125 +180,91 @@ struct Search<'a> {
 impl<'a> Search<'a> {
     /// Adds the highlights of some lights that are not known yet.
     fn add_highlights(&self, lights: &[SmallLight], found: &mut Vec<Highlight>) {
-        let film = self.world.scene.film;
+        let film = self.chain.world.scene.film;
         let [columns, rows] = [film.width, film.height].map(|size| (f64::from(size) / self.step).ceil() as usize);
         let film_point = |i: usize| DVec2::new((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5) * self.step;
-        let visible_points: Vec<Option<VisiblePoint>> =
-            (0..columns * rows).map(|i| self.visible_point(film_point(i))).collect();
-        if visible_points.iter().all(Option::is_none) {
+        let ends: Vec<Option<ChainEnd>> = (0..columns * rows).map(|i| self.chain.trace(film_point(i))).collect();
+        if ends.iter().all(Option::is_none) {
             return;
         }
         for light in lights {
-            let squared_mismatch = |visible: &VisiblePoint| visible.mismatch(light).difference.length_squared();
+            let squared_mismatch = |end: &ChainEnd| light.mismatch(end).difference.length_squared();
             let squared_mismatches: Vec<f64> =
-                visible_points.iter().map(|visible| visible.as_ref().map_or(f64::INFINITY, squared_mismatch)).collect();
+                ends.iter().map(|end| end.as_ref().map_or(f64::INFINITY, squared_mismatch)).collect();
             let is_nearest = |&i: &usize| {
-                let Some(center) = &visible_points[i] else { return false };
+                let Some(center) = &ends[i] else { return false };
                 let (x, y) = (i % columns, i / columns);
                 let is_better_neighbor = |j: usize| {
                     j != i
                         && squared_mismatches[j] < squared_mismatches[i]
-                        && visible_points[j].as_ref().is_some_and(|other| other.seen == center.seen)
+                        && ends[j].as_ref().is_some_and(|other| other.objects == center.objects)
                 };
                 let [left, top] = [x, y].map(|at| at.saturating_sub(1));
                 let [right, bottom] = [(x + 1).min(columns - 1), (y + 1).min(rows - 1)];
                 !(top..=bottom).any(|y| (left..=right).any(|x| is_better_neighbor(y * columns + x)))
             };
             for i in (0..squared_mismatches.len()).filter(is_nearest) {
-                let highlight =
-                    visible_points[i].as_ref().and_then(|visible| self.follow(film_point(i), visible.seen, light));
+                let highlight = ends[i].as_ref().and_then(|end| self.follow(film_point(i), end, light));
                 found.extend(highlight.filter(|new| !found.iter().any(|known| is_same(known, new))));
-                if found.len() == MAX_HIGHLIGHTS {
+                if found.len() >= MAX_HIGHLIGHTS {
                     return;
                 }
             }
         }
     }
 
-    /// Returns what a point of the film shows; `None` if that mirrors nothing sharply, or if the way there is another.
-    fn visible_point(&self, film: DVec2) -> Option<VisiblePoint> {
-        let scene = &self.world.scene;
-        let slopes_of = |hit: Hit| self.slopes[scene.objects[hit.object as usize].material as usize];
-        let mut ray = scene.camera.ray(film);
-        let mut hit = scene.intersect_seen(&ray, None)?;
-        let mut mirror = None;
-        for event in self.prefix {
-            let wo = -ray.direction;
-            let SurfaceHit { point, .. } = SurfaceHit::new(self.world, &ray, hit);
-            let direction = match event {
-                Event::Pass => self.world.is_see_through(hit.object).then_some(ray.direction)?,
-                Event::Mirror => {
-                    slopes_of(hit).filter(|slopes| *slopes == 0.0)?;
-                    mirror = Some(hit.object);
-                    reflect(wo, shading::normals(&point, wo)[1])
-                }
-            };
-            ray = point.leave(direction);
-            hit = match mirror {
-                None => scene.intersect_seen(&ray, Some(hit.primitive()))?,
-                Some(_) => scene.intersect_from(&ray, Some(hit.primitive()))?,
-            };
-        }
-        let slopes = slopes_of(hit)?;
-        let (wo, SurfaceHit { point, .. }) = (-ray.direction, SurfaceHit::new(self.world, &ray, hit));
-        let [_, normal] = shading::normals(&point, wo);
-        Some(VisiblePoint { seen: SeenObject { object: hit.object, mirror }, point, wo, normal, slopes })
-    }
-
     /// Follows an object's mirror image of a light from a point of the film to its center. Returns the highlight there
     /// if it is small.
-    fn follow(&self, start: DVec2, seen: SeenObject, light: &SmallLight) -> Option<Highlight> {
-        let object_point = |film: DVec2| self.visible_point(film).filter(|visible| visible.seen == seen);
-        let (mut film, mut visible) = (start, object_point(start)?);
+    fn follow(&self, start: DVec2, near: &ChainEnd, light: &SmallLight) -> Option<Highlight> {
+        let trace = |film: DVec2| self.chain.trace(film).filter(|end| end.objects == near.objects);
+        let (mut film, mut end) = (start, trace(start)?);
         for _ in 0..MAX_NEWTON_STEPS {
-            let Mismatch { target, difference } = visible.mismatch(light);
+            let Mismatch { target, difference } = light.mismatch(&end);
             let frame = Frame::about(target);
-            let local_difference =
-                |visible: &VisiblePoint| frame.to_local(visible.mismatch(light).difference).truncate();
-            let current = local_difference(&visible);
-            let derivative =
-                |step: DVec2| Some((local_difference(&object_point(film + step)?) - current) / (step.x + step.y));
+            let local_difference = |end: &ChainEnd| frame.to_local(light.mismatch(end).difference).truncate();
+            let current = local_difference(&end);
+            let derivative = |step: DVec2| Some((local_difference(&trace(film + step)?) - current) / (step.x + step.y));
             let column = |step: DVec2| derivative(step).or_else(|| derivative(-step));
             let jacobian = DMat2::from_cols(column(DVec2::X * FILM_STEP)?, column(DVec2::Y * FILM_STEP)?);
             let inverse_jacobian = jacobian.inverse();
             if !inverse_jacobian.is_finite() {
                 return None;
             }
-            let width = self.width(&visible, light);
+            let width = self.width(&end, light);
             if current.length() <= TOLERANCE * width {
-                return self.highlight(film - inverse_jacobian * current, &visible, light, inverse_jacobian);
+                return self.highlight(film - inverse_jacobian * current, &end, light, inverse_jacobian);
             }
             let mut step = (inverse_jacobian * -current).clamp_length_max(4.0 * self.step);
-            let is_nearer = |next: &VisiblePoint| next.mismatch(light).difference.length() < difference.length();
+            let is_nearer = |next: &ChainEnd| light.mismatch(next).difference.length() < difference.length();
             let next = (0..MAX_HALVINGS).find_map(|_| {
-                let next = object_point(film + step).filter(is_nearer).map(|next| (film + step, next));
+                let next = trace(film + step).filter(is_nearer).map(|next| (film + step, next));
                 step *= 0.5;
                 next
             });
-            (film, visible) = next?;
+            (film, end) = next?;
         }
         None
     }
 
-    /// Returns the half width of a highlight, as a difference of the vectors that [`VisiblePoint::mismatch`] compares.
-    fn width(&self, visible: &VisiblePoint, light: &SmallLight) -> f64 {
-        let ApparentLight { sin, .. } = light.seen_from(visible.point.position);
-        match visible.slopes {
+    /// Returns the half width of a highlight, as a difference of the vectors that [`SmallLight::mismatch`] compares.
+    fn width(&self, end: &ChainEnd, light: &SmallLight) -> f64 {
+        let ApparentLight { sin, .. } = light.seen_from(end.point.position);
+        match end.slopes {
             0.0 => sin,
-            slopes => slopes.hypot(0.5 * sin / visible.wo.dot(visible.normal)),
+            slopes => slopes.hypot(0.5 * sin / end.wo.dot(end.normal)),
         }
     }
 
     /// Returns how much wider an ellipse about a point of the film must be to contain the mirror image of a light.
-    fn margin(&self, film: DVec2, center: &VisiblePoint, light: &SmallLight, radii: DMat2) -> f64 {
-        let is_lit = |visible: VisiblePoint| {
-            let ApparentLight { sin, .. } = light.seen_from(visible.point.position);
-            visible.seen == center.seen && visible.mismatch(light).difference.length() < sin
+    fn margin(&self, film: DVec2, center: &ChainEnd, light: &SmallLight, radii: DMat2) -> f64 {
+        let is_lit = |end: ChainEnd| {
+            let ApparentLight { sin, .. } = light.seen_from(end.point.position);
+            end.objects == center.objects && light.mismatch(&end).difference.length() < sin
         };
         let contains_image = |margin: &&f64| {
             (0..RIM_POINTS).all(|i| {
                 let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(RIM_POINTS));
-                !self.visible_point(film + radii * (DVec2::new(cos, sin) * **margin)).is_some_and(is_lit)
+                !self.chain.trace(film + radii * (DVec2::new(cos, sin) * **margin)).is_some_and(is_lit)
             })
         };
         *MARGINS.iter().find(contains_image).unwrap_or(&MARGINS[MARGINS.len() - 1])
@@ -338,34 +272,29 @@ impl<'a> Search<'a> {
 
     /// Returns the highlight at a point of the film, if it is small and its light is not occluded. `inverse_jacobian`
     /// is the change of the place on the film with the difference of the vectors that are compared.
-    fn highlight(
-        &self,
-        film: DVec2,
-        visible: &VisiblePoint,
-        light: &SmallLight,
-        inverse_jacobian: DMat2,
-    ) -> Option<Highlight> {
-        let ApparentLight { direction, sin, distance } = light.seen_from(visible.point.position);
-        let width = self.width(visible, light);
-        let (reach, peak) = match visible.slopes {
-            0.0 => (self.margin(film, visible, light, inverse_jacobian * width), 0.0),
+    fn highlight(&self, film: DVec2, end: &ChainEnd, light: &SmallLight, inverse_jacobian: DMat2) -> Option<Highlight> {
+        let ApparentLight { direction, sin, distance } = light.seen_from(end.point.position);
+        let width = self.width(end, light);
+        let (reach, peak) = match end.slopes {
+            0.0 => (self.margin(film, end, light, inverse_jacobian * width), 0.0),
             _ => (ROUGH_HALF_WIDTH, ROUGH_HALF_WIDTH * ROUGH_HALF_WIDTH),
         };
         let radii = inverse_jacobian * (reach * width);
         let longest =
             0.5 * (radii.x_axis + radii.y_axis.perp()).length() + 0.5 * (radii.x_axis - radii.y_axis.perp()).length();
         let is_small = PI * width * width * inverse_jacobian.determinant().abs() < MAX_AREA && longest < MAX_HALF_AXIS;
-        if width == 0.0 || sin >= MAX_HALF_ANGLE || !is_small || visible.normal.dot(direction) <= 0.0 {
+        let is_on_that_side = direction.dot(end.normal) * end.outgoing.dot(end.normal) > 0.0;
+        if width == 0.0 || sin >= MAX_HALF_ANGLE || !is_small || !is_on_that_side {
             return None;
         }
-        let world = self.world;
+        let world = self.chain.world;
         let (ends, counts) =
             (RayEnds { light: light.object, ..RayEnds::default() }, |object| !world.is_see_through(object));
-        let ray = visible.point.leave(direction);
+        let ray = end.point.leave(direction);
         let is_occluded = world.scene.is_occluded_by(&ray, distance, ends, &Cell::new(None), &counts);
         (!is_occluded).then(|| Highlight {
             light: light.id,
-            bounces: 1 + self.prefix.iter().filter(|event| **event == Event::Mirror).count() as u32,
+            bounces: self.chain.bounces(),
             center: film.to_array(),
             radii: radii.to_cols_array_2d(),
             peak,

@@ -17,6 +17,7 @@ mod prepare;
 mod reached_places;
 mod room;
 mod seen_light;
+mod specular_chain;
 mod sunlit;
 mod visible_caps;
 
