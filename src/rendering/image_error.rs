@@ -16,6 +16,8 @@ pub struct ImageError {
     pub alpha: Option<Estimate>,
     /// The light that makes an outlier of the noise, in a render that has ended.
     pub rare_light: Option<RareLight>,
+    /// Whether some samples are aimed at small highlights.
+    pub has_highlights: bool,
     /// The error that the color model may cause, as the plan predicts: relative to the strongest channel of each color.
     pub model: f64,
     /// What ended the render, or none while it is running.
@@ -28,11 +30,12 @@ impl ImageError {
     ///
     /// The bound is at least the requested error if that was reached at a later look than the first: a render that ends
     /// as soon as the measured error is small enough tends to end when the measurement is too small. It is also at
-    /// least the requested error if rare light was found, as there may be some that is rarer still.
+    /// least the requested error if rare light was found, as there may be some that is rarer still, and if samples are
+    /// aimed at highlights: of those, the few that just miss a light make most of the noise.
     pub fn at_most(&self) -> f64 {
         let alpha_bound = self.alpha.map_or(0.0, |alpha| alpha.at_most);
         let measured = self.noise.at_most.hypot(self.blur.at_most).hypot(self.model).max(alpha_bound);
-        let is_doubtful = self.noise.samples > FIRST_LOOK || self.noise.outlier.is_some();
+        let is_doubtful = self.noise.samples > FIRST_LOOK || self.noise.outlier.is_some() || self.has_highlights;
         let is_chosen = self.stopped_by == Some(Stopped::Noise) && is_doubtful;
         self.asked.filter(|_| is_chosen).map_or(measured, |asked| measured.max(asked))
     }

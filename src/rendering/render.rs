@@ -294,7 +294,8 @@ impl Rendering {
         let &Measured { noise, blur, alpha } = self.passes.measured()?;
         let (model, stopped_by) = (self.plan.model_error, self.passes.stopped_by());
         let rare_light = run_on(&self.threads, || stopped_by.and_then(|_| self.passes.rare_light()));
-        Some(ImageError { asked: self.render.error, noise, blur, alpha, rare_light, model, stopped_by })
+        let has_highlights = !self.plan.method.highlights.is_empty();
+        Some(ImageError { asked: self.render.error, noise, blur, alpha, rare_light, has_highlights, model, stopped_by })
     }
 
     /// Returns the image of all samples so far.
