@@ -1,4 +1,4 @@
-//! Small highlights: mirror images of small lights, which the samples of a pixel seldom hit.
+//! Small highlights: images of small lights in mirrors and glass, which the samples of a pixel seldom hit.
 //!
 //! Some samples of a pixel are aimed at them. Both kinds of samples find the same light, and the balance heuristic
 //! weighs them (Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*).
@@ -12,13 +12,13 @@ use crate::film::Filter;
 use crate::light::LightId;
 use crate::math::{BELOW_ONE, DMat2, DVec2, Distribution2d};
 
-/// A part of the film on which a surface mirrors a small light: an ellipse in which samples are drawn, most densely at
+/// A part of the film on which surfaces show a small light: an ellipse in which samples are drawn, most densely at
 /// its center.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Highlight {
-    /// The light that is mirrored.
+    /// The light that is shown.
     pub light: LightId,
-    /// The number of surfaces that mirror it one after another.
+    /// The number of surfaces that mirror or refract it one after another.
     pub bounces: u32,
     /// The center of the ellipse, in pixels from the top left corner of the format.
     pub center: [f64; 2],
@@ -154,10 +154,10 @@ impl Highlights {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Counted<'a> {
     /// All light of a sample of the pixel, at a point of the film. `pdf` is the density of such samples there. Light
-    /// that the highlights mirror counts less.
+    /// that the highlights show counts less.
     Ordinary { film: DVec2, pdf: f64, highlights: &'a [SeenHighlight] },
-    /// Light of a sample that was aimed at a highlight: only what it mirrors, by this factor.
-    Mirrored { light: LightId, bounces: u32, factor: f64 },
+    /// Light of a sample that was aimed at a highlight: only what it shows, by this factor.
+    Aimed { light: LightId, bounces: u32, factor: f64 },
 }
 
 impl<'a> Counted<'a> {
@@ -185,12 +185,12 @@ impl<'a> Counted<'a> {
         let Highlight { light, bounces, .. } = aim.highlight;
         let value = filter.value(offset);
         let factor = value / (density(filter, offset) + density_of(highlights, light, bounces, film));
-        (value != 0.0).then_some(Self::Mirrored { light, bounces, factor })
+        (value != 0.0).then_some(Self::Aimed { light, bounces, factor })
     }
 
     /// Whether the sample was aimed at a highlight.
     pub fn is_aimed(&self) -> bool {
-        matches!(self, Self::Mirrored { .. })
+        matches!(self, Self::Aimed { .. })
     }
 
     /// Returns the factor on light of a source that surfaces sent on `bounces` times. It may be negative, where a
@@ -203,8 +203,8 @@ impl<'a> Counted<'a> {
                 Some(light) => pdf / (pdf + density_of(highlights, light, bounces, film)),
                 None => 1.0,
             },
-            Self::Mirrored { light, bounces: mirrors, factor } if (source, bounces) == (Some(light), mirrors) => factor,
-            Self::Mirrored { .. } => 0.0,
+            Self::Aimed { light, bounces: mirrors, factor } if (source, bounces) == (Some(light), mirrors) => factor,
+            Self::Aimed { .. } => 0.0,
         }
     }
 }

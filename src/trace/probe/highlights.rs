@@ -23,7 +23,7 @@ use crate::trace::{Transport, World};
 /// much wider apart they are for longer chains of surfaces.
 const SEARCH_POINTS: f64 = 128.0;
 const LONG_CHAIN_STEP: f64 = 2.0;
-/// Largest number of lights whose mirror images are looked for, and of highlights that are kept.
+/// Largest number of lights whose images are looked for, and of highlights that are kept.
 const MAX_LIGHTS: usize = 16;
 const MAX_HIGHLIGHTS: usize = 1024;
 /// Half angle of the largest light that counts as small, in radians.
@@ -40,8 +40,8 @@ const TOLERANCE: f64 = 1e-2;
 /// Area in square pixels up to which a highlight is small, and the longest half axis of its ellipse in pixels.
 const MAX_AREA: f64 = 1.0;
 const MAX_HALF_AXIS: f64 = 16.0;
-/// How much wider than the mirror image of a light its ellipse may be. Film and directions are not quite in proportion,
-/// so the image is no ellipse. The first of these is taken beyond which a surface mirrors nothing of the light.
+/// How much wider than the image of a light its ellipse may be. Film and directions are not quite in proportion,
+/// so the image is no ellipse. The first of these is taken beyond which nothing of the light is seen.
 const MARGINS: [f64; 11] = [1.0003, 1.001, 1.003, 1.006, 1.012, 1.025, 1.05, 1.1, 1.2, 1.4, 1.8];
 /// Points on the rim of an ellipse where that is looked at.
 const RIM_POINTS: u32 = 16;
@@ -121,7 +121,7 @@ struct ApparentLight {
     distance: f64,
 }
 
-/// Returns lights whose mirror images may be small, suns and skies first.
+/// Returns lights whose images may be small, suns and skies first.
 fn small_lights(world: &World) -> Vec<SmallLight> {
     let small_light = |(id, light): (LightId, &Light<Table>)| {
         let (object, place) = match light {
@@ -213,8 +213,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Follows an object's mirror image of a light from a point of the film to its center. Returns the highlight there
-    /// if it is small.
+    /// Follows the image of a light from a point of the film to its center. Returns the highlight there if it is small.
     fn follow(&self, start: DVec2, near: &ChainEnd, light: &SmallLight) -> Option<Highlight> {
         let trace = |film: DVec2| self.chain.trace(film).filter(|end| end.objects == near.objects);
         let (mut film, mut end) = (start, trace(start)?);
@@ -255,7 +254,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Returns how much wider an ellipse about a point of the film must be to contain the mirror image of a light.
+    /// Returns how much wider an ellipse about a point of the film must be to contain the image of a light.
     fn margin(&self, film: DVec2, center: &ChainEnd, light: &SmallLight, radii: DMat2) -> f64 {
         let is_lit = |end: ChainEnd| {
             let ApparentLight { sin, .. } = light.seen_from(end.point.position);
