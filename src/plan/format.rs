@@ -53,12 +53,13 @@ pub(super) fn describe_effort(times: Effort) -> String {
 
 /// Describes the highlights at which samples are aimed, if there are any.
 pub(super) fn highlights(found: &[Highlight]) -> Option<String> {
-    let what = match found.len() {
-        0 => return None,
-        1 => "1 highlight is".into(),
-        many => format!("{many} highlights are"),
-    };
-    Some(format!("{what} smaller than a pixel: some samples of its pixels are aimed there"))
+    match found.len() {
+        0 => None,
+        1 => Some("1 highlight is smaller than a pixel: some samples of its pixels are aimed there".into()),
+        many => {
+            Some(format!("{many} highlights are smaller than a pixel: some samples of their pixels are aimed there"))
+        }
+    }
 }
 
 /// Formats a time as people say it.

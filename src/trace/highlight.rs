@@ -50,11 +50,13 @@ impl Highlight {
         let map = self.map();
         let point = map.inverse() * (film - DVec2::from(self.center));
         let squared = point.length_squared();
-        let falloff = 1.0 + self.peak * squared;
-        let (most, turn) = (1.0 + self.peak, libm::atan2(point.y, point.x) / TAU);
-        let pdf = FRAC_1_PI * most / (falloff * falloff * map.determinant().abs());
-        let u = [squared * most / falloff, if turn < 0.0 { turn + 1.0 } else { turn }].map(|u| u.min(BELOW_ONE));
-        (squared < 1.0).then_some(Density { pdf, u })
+        (squared < 1.0).then(|| {
+            let falloff = 1.0 + self.peak * squared;
+            let (most, turn) = (1.0 + self.peak, libm::atan2(point.y, point.x) / TAU);
+            let pdf = FRAC_1_PI * most / (falloff * falloff * map.determinant().abs());
+            let u = [squared * most / falloff, if turn < 0.0 { turn + 1.0 } else { turn }].map(|u| u.min(BELOW_ONE));
+            Density { pdf, u }
+        })
     }
 
     /// Returns whether a point of the film lies in the ellipse.

@@ -40,7 +40,7 @@ pub fn take_sample<const N: usize, P: Polarization<N>>(
         audit.begin(&path, &draw);
     }
     let highlights = world.highlights.of_pixel([x, y]);
-    tracer.sensor.counted = Counted::ordinary(filter, film, place - 0.5, highlights);
+    tracer.sensor.set_counted(Counted::ordinary(filter, film, place - 0.5, highlights));
     let first = tracer.trace(&path, &draw, sampler);
     if let (Some(audit), Some(layers)) = (&tracer.walker.audit, &mut tracer.sensor.layers) {
         layers.add_residual(audit, &draw);

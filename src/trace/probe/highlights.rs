@@ -67,7 +67,9 @@ pub fn small_highlights(world: &World) -> Vec<Highlight> {
     for (i, events) in CHAINS.into_iter().enumerate() {
         let chain = SpecularChain { world, events, slopes: &slopes };
         let step = if i == 0 { step } else { LONG_CHAIN_STEP * step };
-        Search { chain, step }.add_highlights(&lights, &mut found);
+        if chain.is_possible() && found.len() < MAX_HIGHLIGHTS {
+            Search { chain, step }.add_highlights(&lights, &mut found);
+        }
     }
     found
 }
@@ -206,7 +208,7 @@ impl<'a> Search<'a> {
             for i in (0..squared_mismatches.len()).filter(is_nearest) {
                 let highlight = ends[i].as_ref().and_then(|end| self.follow(film_point(i), end, light));
                 found.extend(highlight.filter(|new| !found.iter().any(|known| is_same(known, new))));
-                if found.len() >= MAX_HIGHLIGHTS {
+                if found.len() == MAX_HIGHLIGHTS {
                     return;
                 }
             }
@@ -274,14 +276,7 @@ impl<'a> Search<'a> {
     fn highlight(&self, film: DVec2, end: &ChainEnd, light: &SmallLight, inverse_jacobian: DMat2) -> Option<Highlight> {
         let ApparentLight { direction, sin, distance } = light.seen_from(end.point.position);
         let width = self.width(end, light);
-        let (reach, peak) = match end.slopes {
-            0.0 => (self.margin(film, end, light, inverse_jacobian * width), 0.0),
-            _ => (ROUGH_HALF_WIDTH, ROUGH_HALF_WIDTH * ROUGH_HALF_WIDTH),
-        };
-        let radii = inverse_jacobian * (reach * width);
-        let longest =
-            0.5 * (radii.x_axis + radii.y_axis.perp()).length() + 0.5 * (radii.x_axis - radii.y_axis.perp()).length();
-        let is_small = PI * width * width * inverse_jacobian.determinant().abs() < MAX_AREA && longest < MAX_HALF_AXIS;
+        let is_small = PI * width * width * inverse_jacobian.determinant().abs() < MAX_AREA;
         let is_on_that_side = direction.dot(end.normal) * end.outgoing.dot(end.normal) > 0.0;
         if width == 0.0 || sin >= MAX_HALF_ANGLE || !is_small || !is_on_that_side {
             return None;
@@ -290,8 +285,17 @@ impl<'a> Search<'a> {
         let (ends, counts) =
             (RayEnds { light: light.object, ..RayEnds::default() }, |object| !world.is_see_through(object));
         let ray = end.point.leave(direction);
-        let is_occluded = world.scene.is_occluded_by(&ray, distance, ends, &Cell::new(None), &counts);
-        (!is_occluded).then(|| Highlight {
+        if world.scene.is_occluded_by(&ray, distance, ends, &Cell::new(None), &counts) {
+            return None;
+        }
+        let (reach, peak) = match end.slopes {
+            0.0 => (self.margin(film, end, light, inverse_jacobian * width), 0.0),
+            _ => (ROUGH_HALF_WIDTH, ROUGH_HALF_WIDTH * ROUGH_HALF_WIDTH),
+        };
+        let radii = inverse_jacobian * (reach * width);
+        let longest =
+            0.5 * (radii.x_axis + radii.y_axis.perp()).length() + 0.5 * (radii.x_axis - radii.y_axis.perp()).length();
+        (longest < MAX_HALF_AXIS).then(|| Highlight {
             light: light.id,
             bounces: self.chain.bounces(),
             center: film.to_array(),

@@ -63,6 +63,15 @@ pub struct ChainEnd {
 }
 
 impl SpecularChain<'_> {
+    /// Returns whether the world has surfaces for all events.
+    pub fn is_possible(&self) -> bool {
+        self.events.iter().all(|event| match event {
+            Event::Pass => self.world.has_see_through(),
+            Event::Mirror => self.slopes.iter().any(Option::is_some),
+            Event::Cross => self.world.has_media,
+        })
+    }
+
     /// Returns how often surfaces send the light on.
     pub fn bounces(&self) -> u32 {
         self.events.iter().filter(|event| **event != Event::Pass).count() as u32
