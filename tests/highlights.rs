@@ -1,4 +1,4 @@
-//! Mirror images of small lights on the film: some samples of their pixels are aimed at them.
+//! Small lights and their mirror images on the film: some samples of their pixels are aimed at them.
 //!
 //! ```text
 //! cargo test --test all highlights::
@@ -169,6 +169,59 @@ fn every_filter_shows_all_light_of_a_highlight() {
         let expected = mirrored(0.8).map(|band| band * sum);
         mean.assert_near(expected, 3 * filters.len(), filter);
         assert!((sum - 1.0).abs() < 0.03 && mean.worst_relative_error(expected) < 0.002, "{filter}: {sum}, {mean:?}");
+    }
+}
+
+/// A cone of half angle a whose axis is at an angle t to the viewing direction cuts a plane at distance 1 in an ellipse
+/// with the half axes sin(a) cos(a) / (cos(t)^2 - sin(a)^2) and sin(a) / sqrt(cos(t)^2 - sin(a)^2).
+#[test]
+fn small_lights_in_view_have_all_their_light_wherever_they_are_and_behind_panes() {
+    let (radius, fov): (f64, f64) = (0.003, 40.0);
+    let lamp = |center: [f64; 3]| {
+        format!(
+            "[[object]]\nshape.sphere = {{ center = {center:?}, radius = {radius} }}\nmaterial = \"lamp\"\n\
+             [material.lamp]\nemissive.radiance = {{ rgb = [1, 2, 0.5], scale = 2000 }}\n"
+        )
+    };
+    let perspective = |text: String| {
+        let projection = format!("projection = \"orthographic\", height = {HEIGHT}");
+        text.replace(&projection, &format!("vertical_fov = {fov}"))
+    };
+    let matte = "diffuse.reflectance = 0";
+    let squared_side = 4.0 * (0.5 * fov).to_radians().tan().powi(2);
+    let share_of_cone = |toward: [f64; 3], sin: f64| {
+        let [x, y, z] = toward;
+        let difference = z * z / (x * x + y * y + z * z) - sin * sin;
+        PI * sin * sin * (1.0 - sin * sin).sqrt() / (difference * difference.sqrt() * squared_side)
+    };
+    let away = [1.1, 0.71, -4.0];
+    let sin = radius / away.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let sun_toward = [-0.2, 0.31, -1.0];
+    let sun_sin = (0.5 * 0.05_f64).to_radians().sin();
+    let pane = "[material.pane]\nthin.index = 1.5\n[[object]]\nmaterial = \"pane\"\n\
+                shape.quad = { center = [0, 0, 2], u = [1.5, 0, 0], v = [0, 1.5, 0] }\n";
+    let in_parallel = PI * radius * radius / (HEIGHT * HEIGHT);
+    let cases = [
+        (
+            "a lamp",
+            perspective(view("", matte, "")) + &lamp([away[0], away[1], away[2] + 5.0]),
+            share_of_cone(away, sin),
+        ),
+        (
+            "the sun",
+            perspective(view("", matte, &sun(sun_toward, 0.05))),
+            SUN / (2000.0 * PI * sun_sin * sun_sin) * share_of_cone(sun_toward, sun_sin),
+        ),
+        ("a lamp in a parallel view", view("", matte, "") + &lamp([0.63, 0.31, 1.0]), in_parallel),
+        ("behind a pane", view("", matte, pane) + &lamp([0.63, 0.31, 1.0]), in_parallel * 0.96 / 1.04),
+    ];
+    for (name, text, share) in &cases {
+        let (method, mean) = films(text, 0..32);
+        let found: Vec<u32> = method.highlights.iter().map(|highlight| highlight.bounces).collect();
+        assert_eq!(found, [0], "{name}");
+        let expected = [1.0, 2.0, 0.5].map(|color| 2000.0 * color * share);
+        mean.assert_near(expected, 3 * cases.len(), name);
+        assert!(mean.worst_relative_error(expected) < 0.004, "{name}: {mean:?}");
     }
 }
 

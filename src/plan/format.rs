@@ -51,15 +51,20 @@ pub(super) fn describe_effort(times: Effort) -> String {
     }
 }
 
-/// Describes the highlights at which samples are aimed, if there are any.
+/// Describes the small lights and highlights at which samples are aimed, if there are any.
 pub(super) fn highlights(found: &[Highlight]) -> Option<String> {
-    match found.len() {
+    let lights = found.iter().filter(|highlight| highlight.bounces == 0).count();
+    let counted = |count: usize, thing: &str| match count {
         0 => None,
-        1 => Some("1 highlight is smaller than a pixel: some samples of its pixels are aimed there".into()),
-        many => {
-            Some(format!("{many} highlights are smaller than a pixel: some samples of their pixels are aimed there"))
-        }
-    }
+        1 => Some(format!("1 {thing}")),
+        _ => Some(format!("{count} {thing}s")),
+    };
+    let things: Vec<String> =
+        [counted(lights, "light"), counted(found.len() - lights, "highlight")].into_iter().flatten().collect();
+    let (are, their) = if found.len() == 1 { ("is", "its") } else { ("are", "their") };
+    let what = things.join(" and ");
+    (!found.is_empty())
+        .then(|| format!("{what} {are} smaller than a pixel: some samples of {their} pixels are aimed there"))
 }
 
 /// Formats a time as people say it.
@@ -75,8 +80,8 @@ pub(super) fn format_duration(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{describe_effort, format_duration, percent, percent_and_limit, percent_bound};
-    use crate::trace::Effort;
+    use super::{describe_effort, format_duration, highlights, percent, percent_and_limit, percent_bound};
+    use crate::trace::{Effort, Highlight};
 
     #[test]
     fn an_effort_is_that_of_pixels_unless_the_whole_is_asked_for() {
@@ -86,6 +91,20 @@ mod tests {
             formatted(19_600.0, Some(1.02)),
             "the same error would take about 1.0 times as long, that of each pixel 20 thousand times"
         );
+    }
+
+    #[test]
+    fn lights_and_highlights_are_counted_apart() {
+        let highlight =
+            |bounces| Highlight { light: 0, bounces, center: [0.0; 2], radii: [[1.0, 0.0], [0.0, 1.0]], peak: 0.0 };
+        let described = |bounces: &[u32]| {
+            let line = highlights(&bounces.iter().map(|&bounces| highlight(bounces)).collect::<Vec<_>>());
+            line.map(|line| line.split_once(':').expect("it has two parts").0.to_owned())
+        };
+        assert_eq!(described(&[]), None);
+        assert_eq!(described(&[0]).as_deref(), Some("1 light is smaller than a pixel"));
+        assert_eq!(described(&[1, 2]).as_deref(), Some("2 highlights are smaller than a pixel"));
+        assert_eq!(described(&[0, 0, 1]).as_deref(), Some("2 lights and 1 highlight are smaller than a pixel"));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 
 use serde::{Deserialize, Serialize};
 
-use crate::film::Filter;
+use crate::film::{Filter, Window};
 use crate::light::LightId;
 use crate::math::{BELOW_ONE, DMat2, DVec2, Distribution2d};
 
@@ -62,6 +62,13 @@ impl Highlight {
     /// Returns whether a point of the film lies in the ellipse.
     pub(super) fn contains(&self, film: DVec2) -> bool {
         self.density(film).is_some()
+    }
+
+    /// Returns whether samples of any pixel of a window may fall into the ellipse.
+    pub(super) fn is_seen_in(&self, window: Window, filter: Filter) -> bool {
+        let [first, end] = window.ends();
+        let [at_least, at_most] = self.pixels(filter).map(|pixel| pixel.map(i64::from));
+        (0..2).all(|axis| at_most[axis] >= first[axis] && at_least[axis] < end[axis])
     }
 
     /// Returns the first and the last column and row of the pixels whose samples may fall into the ellipse.

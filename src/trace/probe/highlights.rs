@@ -1,5 +1,5 @@
-//! Finds the highlights on the film that are smaller than a pixel, where surfaces mirror or refract small lights to the
-//! camera.
+//! Finds the highlights on the film that are smaller than a pixel: small lights that the camera sees, or that surfaces
+//! mirror or refract to it.
 //!
 //! Rays from the film are followed along a few chains of surfaces. The search starts where the last surface nearly
 //! sends the ray to a light, and follows the film to such a point by Newton's method, as manifold exploration does
@@ -17,15 +17,18 @@ use crate::scene::RayEnds;
 use crate::shape::Ball;
 use crate::spectrum::Table;
 use crate::trace::highlight::Highlight;
-use crate::trace::{Transport, World};
+use crate::trace::{RAYS_OF_A_LOOK, Transport, World};
 
 /// Points along the longer side of the format at which the search for what a first surface mirrors begins, and how
 /// much wider apart they are for longer chains of surfaces.
 const SEARCH_POINTS: f64 = 128.0;
 const LONG_CHAIN_STEP: f64 = 2.0;
-/// Largest number of lights whose images are looked for, and of highlights that are kept.
-const MAX_LIGHTS: usize = 16;
+/// Largest number of lights whose images in surfaces are looked for, and of highlights that are kept.
+const MAX_LIGHTS: usize = 128;
 const MAX_HIGHLIGHTS: usize = 1024;
+/// Distance in scene units, more than that of a near plane, at which the camera's image of a direction is as if it were
+/// infinitely far.
+const FAR: f64 = 1e40;
 /// Half angle of the largest light that counts as small, in radians.
 const MAX_HALF_ANGLE: f64 = 0.2;
 /// Directions that are drawn along each side of a square to find where the bright part of a sky is.
@@ -54,22 +57,29 @@ pub fn small_highlights(world: &World) -> Vec<Highlight> {
     let scene = &world.scene;
     let is_random = matches!(world.method.transport, Transport::Random { .. });
     let is_sharp = !scene.camera.has_lens() && scene.film.filter != Filter::Center;
+    if !is_random || !is_sharp || world.has_mattes {
+        return Vec::new();
+    }
+    let mut lights = small_lights(world);
     let slopes: Vec<Option<f64>> = scene.materials.iter().map(|named| slopes(&named.material)).collect();
-    if !is_random || !is_sharp || world.has_mattes || slopes.iter().all(Option::is_none) {
-        return Vec::new();
-    }
-    let lights = small_lights(world);
-    if lights.is_empty() {
-        return Vec::new();
-    }
-    let (film, mut found) = (scene.film, Vec::new());
+    let film = scene.film;
     let step = f64::from(film.width.max(film.height)) / SEARCH_POINTS;
-    for (i, events) in CHAINS.into_iter().enumerate() {
-        let chain = SpecularChain { world, events, slopes: &slopes };
-        let step = if i == 0 { step } else { LONG_CHAIN_STEP * step };
-        if chain.is_possible() && found.len() < MAX_HIGHLIGHTS {
-            Search { chain, step }.add_highlights(&lights, &mut found);
-        }
+    let chain_of = |events| SpecularChain { world, events, slopes: &slopes };
+    let no_surfaces = Search::new(chain_of(&[]), step);
+    let mut found: Vec<Highlight> = lights.iter().filter_map(|light| no_surfaces.seen_light(light)).collect();
+    found.truncate(MAX_HIGHLIGHTS);
+    lights.truncate(MAX_LIGHTS);
+    if lights.is_empty() || slopes.iter().all(Option::is_none) {
+        return found;
+    }
+    let chains: Vec<SpecularChain> = CHAINS.map(chain_of).into_iter().filter(SpecularChain::is_possible).collect();
+    let mut rays = RAYS_OF_A_LOOK;
+    for chain in chains {
+        let step = if chain.events.len() == 1 { step } else { LONG_CHAIN_STEP * step };
+        let search = Search::new(chain, step);
+        // The short chains come first, and show most.
+        search.add_highlights(&lights, rays / 2, &mut found);
+        rays = rays.saturating_sub(search.rays.get());
     }
     found
 }
@@ -123,7 +133,7 @@ struct ApparentLight {
     distance: f64,
 }
 
-/// Returns lights whose images may be small, suns and skies first.
+/// Returns all lights whose images may be small, suns and skies first.
 fn small_lights(world: &World) -> Vec<SmallLight> {
     let small_light = |(id, light): (LightId, &Light<Table>)| {
         let (object, place) = match light {
@@ -140,7 +150,6 @@ fn small_lights(world: &World) -> Vec<SmallLight> {
     };
     let mut lights: Vec<SmallLight> = world.scene.lights.iter().enumerate().filter_map(small_light).collect();
     lights.sort_by_key(|light| matches!(light.place, Place::Near(_)));
-    lights.truncate(MAX_LIGHTS);
     lights
 }
 
@@ -177,11 +186,34 @@ struct Search<'a> {
     chain: SpecularChain<'a>,
     /// Distance of the points on the film at which it begins, in pixels.
     step: f64,
+    /// The number of rays of the film that Newton's method has followed so far.
+    rays: Cell<u64>,
 }
 
 impl<'a> Search<'a> {
-    /// Adds the highlights of some lights that are not known yet.
-    fn add_highlights(&self, lights: &[SmallLight], found: &mut Vec<Highlight>) {
+    fn new(chain: SpecularChain<'a>, step: f64) -> Self {
+        Self { chain, step, rays: Cell::new(0) }
+    }
+
+    /// Returns the highlight that is the light itself, if the camera sees it.
+    fn seen_light(&self, light: &SmallLight) -> Option<Highlight> {
+        let scene = &self.chain.world.scene;
+        if light.object.is_some_and(|object| !scene.is_seen(object)) {
+            return None;
+        }
+        let camera = &scene.camera;
+        let point = match &light.place {
+            Place::Far { direction, .. } => camera.position() + direction * FAR,
+            Place::Near(ball) => ball.center,
+        };
+        let film = camera.see(point, [0.5; 2])?.film;
+        let highlight = self.follow(film, &self.chain.trace(film)?, light)?;
+        highlight.is_seen_in(scene.film.whole(), scene.film.filter).then_some(highlight)
+    }
+
+    /// Adds the highlights of some lights that are not known yet, as far as about `rays` rays lead. Each light may take
+    /// an equal share of what those before it have left.
+    fn add_highlights(&self, lights: &[SmallLight], rays: u64, found: &mut Vec<Highlight>) {
         let film = self.chain.world.scene.film;
         let [columns, rows] = [film.width, film.height].map(|size| (f64::from(size) / self.step).ceil() as usize);
         let film_point = |i: usize| DVec2::new((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5) * self.step;
@@ -189,7 +221,7 @@ impl<'a> Search<'a> {
         if ends.iter().all(Option::is_none) {
             return;
         }
-        for light in lights {
+        for (light, left) in lights.iter().zip((1..=lights.len() as u64).rev()) {
             let squared_mismatch = |end: &ChainEnd| light.mismatch(end).difference.length_squared();
             let squared_mismatches: Vec<f64> =
                 ends.iter().map(|end| end.as_ref().map_or(f64::INFINITY, squared_mismatch)).collect();
@@ -205,19 +237,25 @@ impl<'a> Search<'a> {
                 let [right, bottom] = [(x + 1).min(columns - 1), (y + 1).min(rows - 1)];
                 !(top..=bottom).any(|y| (left..=right).any(|x| is_better_neighbor(y * columns + x)))
             };
-            for i in (0..squared_mismatches.len()).filter(is_nearest) {
+            let mut starts: Vec<usize> = (0..squared_mismatches.len()).filter(is_nearest).collect();
+            starts.sort_by(|&i, &j| squared_mismatches[i].total_cmp(&squared_mismatches[j]));
+            let max_rays = self.rays.get() + rays.saturating_sub(self.rays.get()) / left;
+            for i in starts {
+                if found.len() == MAX_HIGHLIGHTS || self.rays.get() >= max_rays {
+                    break;
+                }
                 let highlight = ends[i].as_ref().and_then(|end| self.follow(film_point(i), end, light));
                 found.extend(highlight.filter(|new| !found.iter().any(|known| is_same(known, new))));
-                if found.len() == MAX_HIGHLIGHTS {
-                    return;
-                }
             }
         }
     }
 
     /// Follows the image of a light from a point of the film to its center. Returns the highlight there if it is small.
     fn follow(&self, start: DVec2, near: &ChainEnd, light: &SmallLight) -> Option<Highlight> {
-        let trace = |film: DVec2| self.chain.trace(film).filter(|end| end.objects == near.objects);
+        let trace = |film: DVec2| {
+            self.rays.set(self.rays.get() + 1);
+            self.chain.trace(film).filter(|end| end.objects == near.objects)
+        };
         let (mut film, mut end) = (start, trace(start)?);
         for _ in 0..MAX_NEWTON_STEPS {
             let Mismatch { target, difference } = light.mismatch(&end);
@@ -282,8 +320,9 @@ impl<'a> Search<'a> {
             return None;
         }
         let world = self.chain.world;
-        let (ends, counts) =
-            (RayEnds { light: light.object, ..RayEnds::default() }, |object| !world.is_see_through(object));
+        let is_from_camera = self.chain.bounces() == 0;
+        let counts = |object| !world.is_see_through(object) && (!is_from_camera || world.scene.is_seen(object));
+        let ends = RayEnds { light: light.object, ..RayEnds::default() };
         let ray = end.point.leave(direction);
         if world.scene.is_occluded_by(&ray, distance, ends, &Cell::new(None), &counts) {
             return None;
@@ -310,4 +349,47 @@ fn is_same(known: &Highlight, new: &Highlight) -> bool {
     (known.light, known.bounces) == (new.light, new.bounces)
         && known.contains(new.center.into())
         && new.contains(known.center.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::spectrum::{Basis, ColorSpace};
+    use crate::trace::Method;
+
+    #[test]
+    fn the_search_ends_when_its_rays_are_used_up() {
+        let mut text = String::from(
+            "camera = { position = [0, 0, 12], look_at = [0, 0, 0], vertical_fov = 40 }\nfilm = { width = 64, height = 64 }\n\
+             [material.ball]\nmirror.reflectance = 0.9\n[material.lamp]\nemissive.radiance = 1\n",
+        );
+        for (name, x, y, z, radius) in (0..9)
+            .map(|i| ("ball", 2 * (i % 3) - 2, 2 * (i / 3) - 2, 0, 0.7))
+            .chain((0..2).map(|i| ("lamp", 3 - 6 * i, 5, 9, 0.02)))
+        {
+            text += &format!(
+                "[[object]]\nmaterial = \"{name}\"\nshape.sphere = {{ center = [{x}, {y}, {z}], radius = {radius} }}\n"
+            );
+        }
+        let scene = Scene::parse(&text, ".").expect("it is a scene");
+        let transport = Transport::Random { split: 0.05, roulette: 0.05 };
+        let world = World::new(&scene, Method::of_paths(Basis::rgb(ColorSpace::Rec709), transport, 0));
+        let slopes: Vec<Option<f64>> = world.scene.materials.iter().map(|named| slopes(&named.material)).collect();
+        let lights = small_lights(&world);
+        let search = |rays: u64| {
+            let search = Search::new(SpecularChain { world: &world, events: CHAINS[0], slopes: &slopes }, 0.5);
+            let mut found = Vec::new();
+            search.add_highlights(&lights, rays, &mut found);
+            let of_light = |light: &SmallLight| found.iter().filter(|highlight| highlight.light == light.id).count();
+            (lights.iter().map(of_light).collect::<Vec<_>>(), search.rays.get())
+        };
+        let (all, rays) = search(RAYS_OF_A_LOOK);
+        assert!(all == [9, 9] && rays < RAYS_OF_A_LOOK / 100, "{all:?}, {rays} rays");
+        // A start takes three rays for each step of Newton's method, and one for each halved step.
+        let most_of_a_start = (MAX_NEWTON_STEPS * (2 + MAX_HALVINGS)) as u64;
+        let (some, rays) = search(100);
+        assert!(some.iter().all(|count| (1..9).contains(count)), "{some:?}");
+        assert!(rays < 100 + 2 * most_of_a_start, "{rays} rays");
+    }
 }

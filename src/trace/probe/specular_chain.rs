@@ -48,18 +48,32 @@ pub struct SpecularChain<'a> {
     pub slopes: &'a [Option<f64>],
 }
 
-/// The surface at which the last event of a chain happens.
+/// The surface at which the last event of a chain happens, or the camera if there are none.
 pub struct ChainEnd {
     /// The objects at which all events happen.
     pub objects: [Option<u32>; MAX_EVENTS],
     pub point: SurfacePoint,
-    /// The unit vector to where the ray comes from, and the unit normal of the surface on that side.
+    /// The unit vector to where the ray comes from, and the unit normal of the surface on that side. At the camera, the
+    /// normal is the direction of the ray.
     pub wo: DVec3,
     pub normal: DVec3,
-    /// The direction in which a smooth surface sends the ray.
+    /// The direction in which a smooth surface or the camera sends the ray.
     pub outgoing: DVec3,
     /// The width of the surface's slopes, 0 if it is smooth.
     pub slopes: f64,
+}
+
+impl ChainEnd {
+    fn at_camera(ray: &Ray) -> Self {
+        Self {
+            objects: [None; MAX_EVENTS],
+            point: SurfacePoint::in_space(ray.origin),
+            wo: -ray.direction,
+            normal: ray.direction,
+            outgoing: ray.direction,
+            slopes: 0.0,
+        }
+    }
 }
 
 impl SpecularChain<'_> {
@@ -82,6 +96,9 @@ impl SpecularChain<'_> {
     pub fn trace(&self, film: DVec2) -> Option<ChainEnd> {
         let scene = &self.world.scene;
         let mut ray = scene.camera.ray(film);
+        if self.events.is_empty() {
+            return Some(ChainEnd::at_camera(&ray));
+        }
         let mut media = self.world.media_at_camera(&ray);
         let mut hit = scene.intersect_seen(&ray, None)?;
         let (mut objects, mut is_from_camera) = ([None; MAX_EVENTS], true);
