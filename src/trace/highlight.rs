@@ -90,6 +90,9 @@ struct Density {
 const CELL_COUNTS: [usize; 2] = [12, 16];
 /// Points along each side of a cell that tell how much of it a pixel sees.
 const POINTS_PER_SIDE: usize = 2;
+/// Share of the samples of the fullest cell around it that are also drawn in a cell: a pixel may see a part of it that
+/// has none of its points.
+const NEIGHBOR_SHARE: f64 = 0.25;
 
 /// What a pixel sees of a highlight: samples are drawn only there.
 #[derive(Clone, Debug)]
@@ -108,7 +111,16 @@ impl SeenHighlight {
         };
         let value = |cell, point| filter.value(offset(highlight.point(at(cell, point)), pixel)).abs();
         let points = 0..POINTS_PER_SIDE * POINTS_PER_SIDE;
-        let weight = |cell: [usize; 2]| points.clone().map(|point| value(cell, point)).sum::<f64>();
+        let [columns, rows] = CELL_COUNTS;
+        let sum = |i: usize| points.clone().map(|point| value([i % columns, i / columns], point)).sum();
+        let sums: Vec<f64> = (0..columns * rows).map(sum).collect();
+        let weight = |[x, y]: [usize; 2]| {
+            let near_columns = x.saturating_sub(1)..=(x + 1).min(columns - 1);
+            // The rows go around the center.
+            let near_rows = [rows - 1, 0, 1].map(|step| (y + step) % rows);
+            let near = near_columns.flat_map(|x| near_rows.map(|y| sums[x + y * columns]));
+            sums[x + y * columns] + NEIGHBOR_SHARE * near.fold(0.0, f64::max)
+        };
         let cells = Distribution2d::new(CELL_COUNTS, weight, |_| 1.0);
         (cells.total() > 0.0).then(|| Self { highlight: highlight.clone(), cells })
     }
