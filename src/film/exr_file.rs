@@ -27,7 +27,7 @@ const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 const OTHER_FORMATS: [(&[u8], &str); 3] = [(b"\x89PNG", "PNG"), (b"\xff\xd8\xff", "JPEG"), (b"#?", "Radiance picture")];
 
 /// An OpenEXR file, with all its parts.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ExrFile {
     /// Size of the file in bytes.
     pub length: usize,

@@ -49,7 +49,7 @@ impl PixelBounds {
 }
 
 /// One image of a file, with its own channels.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Part {
     /// The name of the part, which multipart files specify.
     pub name: Option<String>,
@@ -88,7 +88,7 @@ impl Part {
 }
 
 /// One value per pixel.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Channel {
     /// The prefix before the last dot of the full name. Empty at the root.
     pub layer: String,

@@ -13,7 +13,7 @@ pub const TELL_VARIANCE: u32 = 4;
 /// the weights sum to 1 for any s. Weights of a and -a would have the same expectation, but s would be visible: for the
 /// plain cubic with 64 samples, as 2 % of noise. Dividing by their sum would hide s, but be biased, and undefined if as
 /// many samples are subtracted as added, which happens in one of eight pixels with 2 samples.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleWeights {
     counts: [u32; 2],
     /// The integral of the filter's absolute value.

@@ -10,7 +10,7 @@ const BLOCK: u32 = 16;
 ///
 /// Aligned blocks of 16 samples are summed sequentially, and the blocks are the leaves of a binary tree. The error
 /// therefore grows with the logarithm of the count.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PassSum {
     block: Entry,
     /// Entry i, if present, is the sum of 2^i blocks.
@@ -21,14 +21,14 @@ pub struct PassSum {
 }
 
 /// The sum of a pixel's passes, in the order in which they were rendered.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PixelSum {
     total: Entry,
     kept: u32,
     nearest: f64,
 }
 
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Entry {
     rgb: [f64; 3],
     met: u32,

@@ -15,7 +15,7 @@ const MSE_OFFSET: f64 = 0.01;
 const MAX_MATRIX_ERROR: f64 = 1e-3;
 
 /// The difference between two images. Pixels with a value that is not finite are left out, except from `torn`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// The compared pixels: those that both images have.
     pub bounds: PixelBounds,

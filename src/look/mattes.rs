@@ -11,7 +11,7 @@ const MAX_LISTED: usize = 20;
 ///
 /// Cryptomatte specification 1.2.0: layers `CryptoObject00`, `CryptoObject01` .. hold pairs of a name's ID and its
 /// coverage, and an attribute holds the names.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Mattes<'f> {
     name: &'f str,
     /// The part that contains the mattes.

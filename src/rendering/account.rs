@@ -11,7 +11,7 @@ use crate::plan::Plan;
 use crate::trace::Report;
 
 /// How a scene will be rendered.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlanAccount<'a> {
     /// How spectra are represented.
     pub model: String,
@@ -51,7 +51,7 @@ impl<'a> PlanAccount<'a> {
 }
 
 /// What was noticed during a render.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RenderAccount<'a> {
     /// What the tracer noticed.
     #[serde(flatten)]
@@ -83,7 +83,7 @@ impl<'a> RenderAccount<'a> {
 }
 
 /// The error of an image. All errors are relative to the image.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ErrorAccount<'a> {
     /// The requested error, if any.
     pub asked: Option<f64>,

@@ -2,6 +2,7 @@
 
 use std::any::Any;
 use std::borrow::Cow;
+use std::fmt;
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -122,6 +123,14 @@ pub struct Rendering<'a> {
     clock: Clock,
     /// How much work photons count as.
     photon_cost: PhotonCost,
+}
+
+impl fmt::Debug for Rendering<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        let mut shown = formatter.debug_struct("Rendering");
+        shown.field("shard", &self.shard).field("samples", &self.samples()).field("work", &self.work());
+        shown.field("done", &self.done()).finish_non_exhaustive()
+    }
 }
 
 impl<'a> Rendering<'a> {

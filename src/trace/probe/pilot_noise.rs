@@ -42,6 +42,7 @@ pub fn pilot_noise(world: &World) -> PilotNoise {
 }
 
 /// For some samples of a pixel: the mean of X + Y + Z, the variance of one, and the pixel's cell of the format.
+#[derive(Clone, Copy, Debug)]
 struct PixelNoise {
     mean: f64,
     variance: f64,
@@ -88,6 +89,7 @@ impl Effort {
 }
 
 /// The noise of sampled pixels all over the image.
+#[derive(Clone, Debug)]
 pub struct PilotNoise {
     pixels: Vec<PixelNoise>,
     judges_whole: bool,
