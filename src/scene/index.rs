@@ -6,7 +6,7 @@ use std::cell::Cell;
 use super::hit::{Hit, Primitive, RayEnds};
 use super::object::Object;
 use crate::math::Ray;
-use crate::shape::{Bvh, Pool, Shape, Vectors, Visitor, is_before};
+use crate::shape::{Bvh, Pool, Shape, Visitor, is_before};
 
 /// Up to this many objects are tested one by one, since a tree saves nothing there.
 const MAX_LINEAR_OBJECTS: usize = 12;
@@ -148,7 +148,7 @@ struct ObjectVisitor<'a, F> {
 
 impl<F: FnMut(u32, f64) -> Option<f64>> Visitor for ObjectVisitor<'_, F> {
     #[inline]
-    fn visit(&mut self, _: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
+    fn visit(&mut self, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
         for &item in &self.index.tree.items()[first..first + groups] {
             t_max = (self.test)(self.index.tree_objects[item as usize], t_max)?;
         }

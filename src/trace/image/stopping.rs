@@ -32,7 +32,7 @@ pub enum Stopped {
 
 impl Stopped {
     /// Returns what ended a render.
-    pub fn new(stop: &Stop, progress: &Progress) -> Self {
+    pub(super) fn new(stop: &Stop, progress: &Progress) -> Self {
         match () {
             () if is_enough(stop, progress.measured.as_ref()) => Self::Noise,
             () if progress.stage.before >= max_each(stop) => Self::Samples,
