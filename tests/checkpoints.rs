@@ -299,7 +299,7 @@ fn a_part_that_stops_goes_on_to_the_same_bytes() {
         whole.write_part(&part).expect("a part can be written");
         advance(&mut first, asked / 2);
         first.save(&checkpoint).expect("a checkpoint can be written");
-        next.resume(&checkpoint).expect("a checkpoint can be read");
+        assert_eq!(next.resume(&checkpoint).expect("a checkpoint can be read"), Resumed::Continues, "{kind}");
         advance(&mut next, u64::MAX);
         next.write_part(&other).expect("a part can be written");
         let read = |path| std::fs::read(path).expect("it was written");

@@ -55,7 +55,8 @@ fn any_threads_and_stops_on_the_way_make_the_same_bytes() {
                 advance(&mut first, (random.number() * 0.6 * asked as f64) as u64);
                 first.save(&path).expect("a checkpoint can be written");
                 let mut next = rendering(&scene, &options, 9 - threads);
-                next.resume(&path).expect("a checkpoint can be read");
+                let resumed = next.resume(&path).expect("a checkpoint can be read");
+                assert!(!matches!(resumed, Resumed::HasMore(_)), "{kind}");
                 assert_eq!(next.done(), first.done(), "{kind}");
                 assert!(next.image().film() == first.image().film(), "{kind}");
                 first = next;

@@ -48,7 +48,8 @@ impl ExrFile {
     /// [`Error::Arguments`] if the file does not exist or is clearly something else, such as a scene or a PNG;
     /// [`Error::Decode`] if it is no OpenEXR file, incomplete, or of an unsupported kind; [`Error::Io`] if reading
     /// fails.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
         Self::of_bytes(&bytes(path)?, path)
     }
 
@@ -56,7 +57,8 @@ impl ExrFile {
     ///
     /// # Errors
     /// [`Error::Decode`] if they are no OpenEXR file, incomplete, or of an unsupported kind.
-    pub fn of_bytes(bytes: &[u8], path: &Path) -> Result<Self> {
+    pub fn of_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
         match catch_panics(|| Ok::<_, String>(Self::decode(bytes))) {
             Ok(Ok(file)) => Ok(file),
             Ok(Err(exr::error::Error::NotSupported(what))) => {
@@ -96,7 +98,8 @@ impl ExrFile {
     ///
     /// # Errors
     /// The errors of [`read`](Self::read).
-    pub fn outline(path: &Path) -> Result<Option<(Self, String)>> {
+    pub fn outline(path: impl AsRef<Path>) -> Result<Option<(Self, String)>> {
+        let path = path.as_ref();
         let bytes = bytes(path)?;
         let described = catch_panics(|| MetaData::read_from_buffered(Cursor::new(&bytes), false));
         let headers = described.map_err(|reason| decode_error(path, &reason))?.headers;

@@ -6,6 +6,7 @@ use crate::error::nearest;
 
 /// A layer, or several of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Layer {
     /// Light that reaches the camera straight from emitting surfaces: `L E` in Heckbert's notation.
     Emission,

@@ -40,11 +40,13 @@ impl SampleWeights {
     }
 
     /// Returns the weights of a part of these samples on its own.
+    #[must_use]
     pub fn of_part(&self, counts: [u32; 2]) -> Self {
         Self::with_integral(self.absolute, counts)
     }
 
     /// Returns the weights of the samples outside a part.
+    #[must_use]
     pub fn of_others(&self, counts: [u32; 2]) -> Self {
         self.of_part([0, 1].map(|i| self.counts[i].saturating_sub(counts[i])))
     }

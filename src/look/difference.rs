@@ -16,6 +16,7 @@ const MAX_MATRIX_ERROR: f64 = 1e-3;
 
 /// The difference between two images. Pixels with a value that is not finite are left out, except from `torn`.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Difference {
     /// The compared pixels: those that both images have.
     pub bounds: PixelBounds,

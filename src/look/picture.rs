@@ -113,7 +113,8 @@ impl Picture {
     ///
     /// # Errors
     /// If the file cannot be written. Nothing is then left behind.
-    pub fn write_png(&self, path: &Path) -> Result<()> {
+    pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
         replace_file(path, &self.encode(path)?)
     }
 

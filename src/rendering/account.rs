@@ -12,6 +12,7 @@ use crate::trace::Report;
 
 /// How a scene will be rendered.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct PlanAccount<'a> {
     /// How spectra are represented.
     pub model: String,
@@ -52,6 +53,7 @@ impl<'a> PlanAccount<'a> {
 
 /// What was noticed during a render.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct RenderAccount<'a> {
     /// What the tracer noticed.
     #[serde(flatten)]
@@ -84,6 +86,7 @@ impl<'a> RenderAccount<'a> {
 
 /// The error of an image. All errors are relative to the image.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct ErrorAccount<'a> {
     /// The requested error, if any.
     pub asked: Option<f64>,

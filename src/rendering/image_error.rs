@@ -4,6 +4,7 @@ use crate::trace::{Estimate, FIRST_LOOK, Noise, RareLight, Stopped};
 ///
 /// Errors are relative: the root mean square over all pixels and the three film channels, divided by that of the image.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ImageError {
     /// The requested error, if any.
     pub asked: Option<f64>,

@@ -131,6 +131,7 @@ impl Rendering {
     }
 
     /// Counts the time that the render may take from an earlier moment, such as before the scene was read.
+    #[must_use]
     pub fn since(mut self, began: Instant) -> Self {
         self.began = self.began.map(|_| began);
         self.passes = self.passes.since(began);
@@ -239,8 +240,8 @@ impl Rendering {
     ///
     /// # Errors
     /// The errors of [`save`](Self::save).
-    pub fn save_finished(&self, path: impl AsRef<Path>, files: &[&Path], way: &str) -> Result<()> {
-        let written: Vec<Written> = files.iter().filter_map(|file| Written::from_file(file, way)).collect();
+    pub fn save_finished(&self, path: impl AsRef<Path>, files: &[impl AsRef<Path>], way: &str) -> Result<()> {
+        let written = files.iter().filter_map(|file| Written::from_file(file.as_ref(), way)).collect();
         checkpoint::save(path.as_ref(), &self.identity, &Finished::new(&self.render, written), &self.passes)
     }
 

@@ -12,6 +12,7 @@ use crate::math::{Bounds, DVec3, Ray, Transform, gamma, sample_disk, sample_sphe
 
 /// A surface.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Shape {
     /// An infinite plane.
     Plane(Plane),
@@ -202,6 +203,7 @@ impl Shape {
     }
 
     /// Returns a copy of the shape after an invertible affine map. Copies of a mesh share its triangles.
+    #[must_use]
     pub fn copied(&self, map: &Transform) -> Self {
         let shared = match self {
             Self::Mesh(mesh) if *map != Transform::IDENTITY => Instance::new(mesh.clone(), *map),

@@ -130,6 +130,7 @@ impl Mesh {
     }
 
     /// Returns the mesh with vertex attributes. Lists that are not empty have an entry for each vertex.
+    #[must_use]
     pub fn with(self, attributes: Attributes) -> Self {
         Self { attributes, ..self }
     }

@@ -5,6 +5,7 @@ use super::{Attributes, Vertices};
 
 /// The contents of a mesh file.
 #[derive(Default)]
+#[non_exhaustive]
 pub struct MeshFile {
     /// Vertices, in the precision of the file.
     pub vertices: Vertices,

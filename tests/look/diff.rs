@@ -67,7 +67,7 @@ fn diff(folder: &Folder, a: &Exr, b: &Exr, more: &[&str]) -> Answer {
 fn difference(a: &Exr, b: &Exr) -> Difference {
     let folder = Folder::new();
     diff(&folder, a, b, &[]);
-    let [a, b] = ["a.exr", "b.exr"].map(|name| ExrFile::read(&folder.path_of(name)).expect("an image"));
+    let [a, b] = ["a.exr", "b.exr"].map(|name| ExrFile::read(folder.path_of(name)).expect("an image"));
     compare([&a, &b], None, ["a.exr", "b.exr"]).expect("they can be compared")
 }
 

@@ -31,6 +31,7 @@ use crate::trace::replicates::{Products, REPLICATES, Replicates};
 ///
 /// Errors are relative: the root mean square over all pixels and film channels, divided by that of the image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Noise {
     /// Camera samples of each pixel for which the noise is measured.
     pub samples: u32,

@@ -34,6 +34,7 @@ const TILES_AT_A_TIME: usize = 256;
 
 /// What rendering noticed. Fields that only messages use are not serialized.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Report {
     /// Camera samples taken.
     pub samples: u64,
@@ -143,11 +144,13 @@ impl<'a> Rendering<'a> {
     }
 
     /// Starts the time of a stop rule at another moment.
+    #[must_use]
     pub fn since(self, began: Instant) -> Self {
         Self { clock: Clock::new(began), ..self }
     }
 
     /// Counts photons as a number of camera samples in its [work](Self::work).
+    #[must_use]
     pub fn counting_photons_as(self, photon_cost: PhotonCost) -> Self {
         Self { photon_cost, ..self }
     }

@@ -20,6 +20,7 @@ const MIN_TIME_SHARE: f64 = 0.02;
 /// What ended a render that had a stop rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Stopped {
     /// The error is as small as requested.
     #[serde(rename = "error")]

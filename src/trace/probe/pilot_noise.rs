@@ -77,11 +77,13 @@ impl Effort {
     }
 
     /// Returns the ratio with the two ways exchanged.
+    #[must_use]
     pub fn inverse(self) -> Self {
         Self { of_pixels: self.of_pixels.recip(), of_whole: self.of_whole.map(f64::recip) }
     }
 
     /// Returns the ratio of this work to another.
+    #[must_use]
     pub fn over(self, other: Self) -> Self {
         let of_whole = self.of_whole.zip(other.of_whole).map(|(own, other)| own / other);
         Self { of_pixels: self.of_pixels / other.of_pixels, of_whole }
