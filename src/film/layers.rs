@@ -307,7 +307,7 @@ impl LayerImage {
 }
 
 /// The longest channel name that every reader preserves.
-pub const LONGEST_NAME: usize = 31;
+pub const MAX_NAME_BYTES: usize = 31;
 
 /// Returns the name of a light's layer: `light_` and the light's name, in which `_` replaces all characters except
 /// letters and digits.

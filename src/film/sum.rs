@@ -126,7 +126,7 @@ impl PixelSum {
     /// Returns the pixel: the mean over the samples that were kept, including the subtracted ones, plus `extra`, light
     /// that is already a mean. The depth is that of the added samples.
     pub fn pixel(&self, subtracted: &Self, weights: &SampleWeights, extra: [f64; 3]) -> Pixel {
-        let mean = |of: &dyn Fn(&Self) -> f64| weights.sum([of(self), of(subtracted)]) / weights.taken();
+        let mean = |value: &dyn Fn(&Self) -> f64| weights.sum([value(self), value(subtracted)]) / weights.taken();
         Pixel {
             rgb: std::array::from_fn(|i| stored(mean(&|sum| sum.total.rgb[i]) + extra[i])),
             alpha: mean(&|sum| sum.total.met.into()).clamp(0.0, 1.0) as f32,

@@ -49,13 +49,13 @@ impl Written {
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Finished {
     /// A digest of the requested settings.
-    asked: String,
+    settings_digest: String,
     written: Vec<Written>,
 }
 
 impl Finished {
     pub(super) fn new(render: &RenderText, written: Vec<Written>) -> Self {
-        Self { asked: digest(&format!("{render:?}")), written }
+        Self { settings_digest: digest(&format!("{render:?}")), written }
     }
 }
 
@@ -73,9 +73,9 @@ pub fn has_finished(
         if !blocks.block::<Identity>()?.is_of_scene(scene, shard) {
             return Ok(false);
         }
-        let Finished { asked, written } = blocks.block()?;
+        let Finished { settings_digest, written } = blocks.block()?;
         let is_unchanged = |file: &Path| Written::from_file(file, way).is_some_and(|file| written.contains(&file));
-        let has_same_settings = asked == digest(&format!("{:?}", scene.render));
+        let has_same_settings = settings_digest == digest(&format!("{:?}", scene.render));
         Ok(has_same_settings && files.iter().all(|file| is_unchanged(file.as_ref())))
     };
     // Any error is reported when the render tries to continue from the checkpoint.

@@ -104,7 +104,7 @@ impl Image {
     pub fn warnings(&self) -> Vec<String> {
         let samples = self.provenance.count(SAMPLES);
         let few = samples.and_then(|samples| few_samples(&self.format.layers, samples));
-        let is_dark = self.report.light == 0.0 && self.error.as_ref().is_none_or(|error| error.asked.is_none());
+        let is_dark = self.report.light == 0.0 && self.error.as_ref().is_none_or(|error| error.requested.is_none());
         let dark_warning = self.dark_warning.clone().filter(|_| is_dark);
         few.into_iter().chain(dark_warning).chain(warnings(&self.report, self.error.as_ref())).collect()
     }

@@ -47,11 +47,11 @@ impl Index {
         objects: &[Object],
         ray: &Ray,
         distance: f64,
-        left: Option<Primitive>,
+        start: Option<Primitive>,
         accept: impl Fn(u32) -> bool,
     ) -> Option<Hit> {
-        let triangle = left.map(|left| [left.object, left.part]);
-        let left = left.unwrap_or(Primitive::NONE);
+        let triangle = start.map(|left| [left.object, left.part]);
+        let left = start.unwrap_or(Primitive::NONE);
         let pooled = self.pool.as_ref().and_then(|pool| pool.nearest(ray, distance, triangle, &accept));
         let mut nearest = pooled.map(|(object, intersection)| Hit { object, intersection });
         let limit = nearest.map_or(distance, |hit| hit.intersection.t);
@@ -82,7 +82,7 @@ impl Index {
         last_occluder: &Cell<Option<u32>>,
         accept: impl Fn(u32) -> bool,
     ) -> bool {
-        let RayEnds { left, light, part } = ends;
+        let RayEnds { start, light, part } = ends;
         // An object listed after the light's own does not hide it at an equal distance.
         let hides_at = |[object, other]: [u32; 2], t: f64| match light {
             Some(light) if light == object => part.is_some_and(|part| is_before([other, part], [t, distance])),
@@ -90,7 +90,7 @@ impl Index {
             Some(light) if light < object => t < distance,
             _ => true,
         };
-        let triangle = left.map(|left| [left.object, left.part]);
+        let triangle = start.map(|left| [left.object, left.part]);
         if self.pool.as_ref().is_some_and(|pool| pool.any(ray, distance, triangle, hides_at)) {
             return true;
         }
@@ -102,7 +102,7 @@ impl Index {
                 light => {
                     let is_later = light.is_some_and(|light| light < object);
                     let t_max = if is_later { distance.next_down() } else { distance };
-                    shape.is_crossed(ray, t_max, left.and_then(|left| left.part_of(object)))
+                    shape.is_crossed(ray, t_max, start.and_then(|left| left.part_of(object)))
                 }
             }
         };
