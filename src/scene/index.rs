@@ -50,7 +50,7 @@ impl Index {
         start: Option<Primitive>,
         accept: impl Fn(u32) -> bool,
     ) -> Option<Hit> {
-        let triangle = start.map(|left| [left.object, left.part]);
+        let triangle = start.map(|start| [start.object, start.part]);
         let left = start.unwrap_or(Primitive::NONE);
         let pooled = self.pool.as_ref().and_then(|pool| pool.nearest(ray, distance, triangle, &accept));
         let mut nearest = pooled.map(|(object, intersection)| Hit { object, intersection });
@@ -90,7 +90,7 @@ impl Index {
             Some(light) if light < object => t < distance,
             _ => true,
         };
-        let triangle = start.map(|left| [left.object, left.part]);
+        let triangle = start.map(|start| [start.object, start.part]);
         if self.pool.as_ref().is_some_and(|pool| pool.any(ray, distance, triangle, hides_at)) {
             return true;
         }
@@ -102,7 +102,7 @@ impl Index {
                 light => {
                     let is_later = light.is_some_and(|light| light < object);
                     let t_max = if is_later { distance.next_down() } else { distance };
-                    shape.is_crossed(ray, t_max, start.and_then(|left| left.part_of(object)))
+                    shape.is_crossed(ray, t_max, start.and_then(|start| start.part_of(object)))
                 }
             }
         };
