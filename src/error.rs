@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 /// A failure, worded for the person who ran the command.
 #[derive(thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// The scene cannot be rendered as written. Lists its mistakes in the order of the file.
     #[error("{}", join_mistakes(.0))]
@@ -122,6 +123,8 @@ impl Diagnostic {
         self.help.iter().fold(summary, |summary, help| format!("{summary} ({help})"))
     }
 }
+
+impl std::error::Error for Diagnostic {}
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {

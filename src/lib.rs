@@ -42,7 +42,7 @@
 //! The modules are called rooms. A room uses only rooms on lower floors; `tests/floors.rs` checks this.
 
 #![deny(unsafe_code)]
-#![warn(missing_docs)]
+#![warn(missing_debug_implementations, missing_docs, unnameable_types)]
 
 // Floor 0
 mod error;

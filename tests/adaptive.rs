@@ -116,7 +116,8 @@ fn films(text: &str, density: Option<&SampleDensity>, change: impl Fn(Method) ->
 #[test]
 fn every_pixel_takes_the_samples_of_its_cell() {
     let density = density();
-    let stop = |method| Method { stop: Some(Stop { noise: None, time: None, least: 64, most: 64 }), ..method };
+    let stop =
+        |method| Method { stop: Some(Stop { noise: None, time: None, min_samples: 64, max_samples: 64 }), ..method };
     for (name, film, each) in [
         ("one render", films(&partly_noisy([12, 12], 20, ""), Some(&density), |method| method, 1).remove(0), [20, 1]),
         ("replicates", films(&partly_noisy([12, 12], 20, ""), Some(&density), stop, 1).remove(0), [8, 8]),
@@ -138,7 +139,8 @@ fn the_density_of_samples_changes_no_mean() {
     const SEEDS: u64 = 24;
     type Change = fn(Method) -> Method;
     let vertices = |method| Method { light_vertices: true, ..method };
-    let stop = |method| Method { stop: Some(Stop { noise: None, time: None, least: 32, most: 32 }), ..method };
+    let stop =
+        |method| Method { stop: Some(Stop { noise: None, time: None, min_samples: 32, max_samples: 32 }), ..method };
     let plain: Change = |method| method;
     let photons = |method| Method {
         light_pass: Some(LightPass {

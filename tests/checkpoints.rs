@@ -162,9 +162,9 @@ fn is_same(a: &Image, b: &Image) -> bool {
 
 /// Returns the options with a plan from a file, so that renders of one scene need not plan again.
 pub fn planned(scene: &Scene, options: &Options, folder: &Path) -> Options {
-    let (path, mut asked) = (folder.join("image.plan"), scene.clone());
-    options.apply(&mut asked).expect("the options fit");
-    abbe::write_plan(&abbe::plan::plan(&asked), &asked, &path).expect("a plan can be written");
+    let (path, mut planned) = (folder.join("image.plan"), scene.clone());
+    options.apply(&mut planned).expect("the options fit");
+    abbe::write_plan(&abbe::plan::plan(&planned), &planned, &path).expect("a plan can be written");
     Options { plan: Some(path), ..options.clone() }
 }
 
@@ -187,10 +187,10 @@ pub fn rendering(scene: &Scene, options: &Options, threads: usize) -> Rendering 
 
 /// Renders until the stop condition has been polled `most` times. Returns how often it was polled.
 pub fn advance(rendering: &mut Rendering, most: u64) -> u64 {
-    let asked = AtomicU64::new(0);
-    let is_due = || asked.fetch_add(1, Ordering::Relaxed) >= most;
+    let calls = AtomicU64::new(0);
+    let is_due = || calls.fetch_add(1, Ordering::Relaxed) >= most;
     while rendering.advance_until(&|_| (), &is_due) == Advance::Passed {}
-    asked.into_inner()
+    calls.into_inner()
 }
 
 #[test]
@@ -202,13 +202,13 @@ fn a_render_that_stops_anywhere_goes_on_to_the_same_bytes() {
         let options = planned_once(kind, &scene, &options, folder.path());
         let mut whole = rendering(&scene, &options, 2);
         assert!(is_meant(&whole.plan().method), "{kind}: {:?}", whole.plan().because);
-        let asked = advance(&mut whole, u64::MAX);
+        let calls = advance(&mut whole, u64::MAX);
         let (expected, report) = (bytes(&whole.image(), folder.path()), whole.image().report().clone());
         for threads in [1, 7] {
             let mut first = rendering(&scene, &options, threads);
             // Twice, so that a resumed render stops again.
             for _ in 0..2 {
-                advance(&mut first, (random.number() * 0.6 * asked as f64) as u64);
+                advance(&mut first, (random.number() * 0.6 * calls as f64) as u64);
                 first.save(&path).expect("a checkpoint can be written");
                 let mut next = rendering(&scene, &options, 9 - threads);
                 let resumed = next.resume(&path).expect("a checkpoint can be read");
@@ -239,9 +239,9 @@ fn a_render_that_stops_and_goes_on_in_one_run_makes_the_same_image() {
         let scene = scene(&text);
         let options = planned_once(kind, &scene, &options, folder.path());
         let (mut whole, mut often) = (rendering(&scene, &options, 2), rendering(&scene, &options, 2));
-        let asked = advance(&mut whole, u64::MAX);
+        let calls = advance(&mut whole, u64::MAX);
         while often.done() < often.work() {
-            advance(&mut often, asked / 7 + 1);
+            advance(&mut often, calls / 7 + 1);
         }
         let [whole, often] = [whole, often].map(|rendering| bytes(&rendering.image(), folder.path()));
         assert!(whole == often, "{kind}");
@@ -295,11 +295,11 @@ fn a_part_that_stops_goes_on_to_the_same_bytes() {
         let scene = scene(&text);
         let options = planned_once(kind, &scene, &Options { shard, ..options }, folder.path());
         let [mut whole, mut first, mut next] = [2, 3, 1].map(|threads| rendering(&scene, &options, threads));
-        let asked = advance(&mut whole, u64::MAX);
+        let calls = advance(&mut whole, u64::MAX);
         whole.write_part(&part).expect("a part can be written");
-        advance(&mut first, asked / 2);
+        advance(&mut first, calls / 2);
         first.save(&checkpoint).expect("a checkpoint can be written");
-        next.resume(&checkpoint).expect("a checkpoint can be read");
+        assert_eq!(next.resume(&checkpoint).expect("a checkpoint can be read"), Resumed::Continues, "{kind}");
         advance(&mut next, u64::MAX);
         next.write_part(&other).expect("a part can be written");
         let read = |path| std::fs::read(path).expect("it was written");

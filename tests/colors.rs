@@ -26,7 +26,7 @@ const MODELS: [&str; 6] =
     ["\"rgb\"", "{ bands = 8 }", "{ bands = 12 }", "{ bands = 16 }", "{ bands = 32 }", "\"hero\""];
 /// Lights are not selected by their brightness, which is measured in film colors, so all films share their random
 /// numbers.
-const ALL_LIGHTS: Transport = Transport::Deterministic { cutoff: 1e-4, most: u64::MAX };
+const ALL_LIGHTS: Transport = Transport::Deterministic { cutoff: 1e-4, max_sample_surfaces: u64::MAX };
 
 /// Returns a scene in a color space and under a spectral model.
 fn text(body: &str, space: ColorSpace, model: &str, caustics: &str) -> String {

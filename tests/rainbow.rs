@@ -13,7 +13,7 @@ use crate::support::scenes::{film_of, method, scene};
 const CAMERA: f64 = 1e6;
 const SUN_DEGREES: f64 = 0.2;
 /// All paths inside the drop are followed while they carry more than this. The secondary bow carries some thousandths.
-const FAINT: Transport = Transport::Deterministic { cutoff: 1e-6, most: u64::MAX };
+const FAINT: Transport = Transport::Deterministic { cutoff: 1e-6, max_sample_surfaces: u64::MAX };
 
 /// Light that is reflected a number of times inside the drop before it leaves.
 struct Bow {

@@ -205,7 +205,7 @@ fn files_are_named_from_the_folder_of_the_file_that_names_them() {
         ("parts/paint.csv", "400, 0.75\n700, 0.75\n"),
     ]);
     let set = |settings: &[&str]| {
-        let source = Source::read(&folder.path_of("scene.toml")).expect("the scene can be read");
+        let source = Source::read(folder.path_of("scene.toml")).expect("the scene can be read");
         let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
         format!("{:?}", source.compile_with(&settings).expect("the scene is right").materials)
     };
@@ -261,4 +261,11 @@ fn no_more_threads_are_started_than_a_machine_bears() {
         let options = Options { threads: Some(threads), ..Options::default() };
         assert_eq!(refusal(options, |_| ()), "a render has 1 to 1024 threads");
     }
+}
+
+#[test]
+fn an_error_can_be_boxed_and_sent_to_another_thread() {
+    let error = Scene::parse("film = 3", "").expect_err("a film has a width and a height");
+    let boxed: Box<dyn std::error::Error + Send + Sync> = error.into();
+    assert!(boxed.to_string().starts_with("scene.toml:1:"), "{boxed}");
 }

@@ -130,7 +130,8 @@ fn assert_same_but_depth(scaled: &Film, film: &Film, size: f32) {
 
 #[test]
 fn s6_a_scene_scaled_by_a_power_of_two_gives_the_identical_image() {
-    for transport in [SPLITTING, SINGLE_PATH, Transport::Deterministic { cutoff: 1e-4, most: u64::MAX }] {
+    for transport in [SPLITTING, SINGLE_PATH, Transport::Deterministic { cutoff: 1e-4, max_sample_surfaces: u64::MAX }]
+    {
         let (film, report) = render_film(&text(1.0), transport);
         assert_eq!((report.non_finite, report.unmatched), (0, 0));
         let seen = |test: &dyn Fn(f32) -> bool| film.pixels.iter().filter(|pixel| test(pixel.rgb[0])).count();

@@ -94,9 +94,11 @@ fn w3_light_caught_in_a_glass_cube_does_not_run_forever() {
     let text = |side: u32| view([0.0; 3], [0.0, 0.0, -1.0], 90.0, side) + &cube + &environment(1.0);
     // 3 (1 - cos of the critical angle) of the directions lead out.
     let exact = 3.0 * (1.0 - (1.0 - 1.0 / 2.25f64).sqrt());
-    for (transport, side) in
-        [(SPLITTING, 142), (SINGLE_PATH, 60), (Transport::Deterministic { cutoff: 1e-9, most: u64::MAX }, 60)]
-    {
+    for (transport, side) in [
+        (SPLITTING, 142),
+        (SINGLE_PATH, 60),
+        (Transport::Deterministic { cutoff: 1e-9, max_sample_surfaces: u64::MAX }, 60),
+    ] {
         let (film, report) = render_film(&text(side), transport);
         // Pixels of a plane cover solid angles in proportion to the cube of the cosine.
         let solid_angle = |at: usize| {
@@ -136,7 +138,7 @@ fn w5_splitting_and_roulette_agree_with_following_every_branch() {
     let radiance = 4.0;
     let text = glass_balls(24, "center", 28.0, radiance);
     let cutoff = 1e-7;
-    let (whole, report) = render_film(&text, Transport::Deterministic { cutoff, most: u64::MAX });
+    let (whole, report) = render_film(&text, Transport::Deterministic { cutoff, max_sample_surfaces: u64::MAX });
     let [whole, ..] = mean_color(&whole);
     for transport in [SPLITTING, SINGLE_PATH] {
         let mean = Mean::render_text(&text, transport, 100);
@@ -189,7 +191,8 @@ fn a_surface_that_passes_no_light_on_shows_its_own_and_nothing_else() {
     let black = "{ index = { rgb = [1.5, 1.6, 1.7] }, reflectance = 0, transmittance = 0, emission = 0.5 }";
     let ball = body("ember", &format!("dielectric = {black}"), &["sphere = { center = [0, 0, 0], radius = 1 }"]);
     let text = view([0.0, 0.0, 5.0], [0.0; 3], 10.0, 16) + &ball + &environment(1.0);
-    for transport in [SPLITTING, SINGLE_PATH, Transport::Deterministic { cutoff: 1e-9, most: u64::MAX }] {
+    for transport in [SPLITTING, SINGLE_PATH, Transport::Deterministic { cutoff: 1e-9, max_sample_surfaces: u64::MAX }]
+    {
         let (film, report) = render_film(&text, transport);
         assert_eq!(report.non_finite, 0, "{transport:?}");
         assert!(film.pixels.iter().all(|pixel| pixel.rgb == [0.5; 3]), "{transport:?}");
@@ -255,7 +258,9 @@ fn w7_where_light_has_too_many_ways_the_plan_leaves_them_to_chance_and_says_so()
 fn w7_a_camera_sample_that_meets_too_many_surfaces_goes_on_by_chance_to_the_same_mean() {
     let rendered = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| render_film(&panes(true, 20), Transport::Deterministic { cutoff: 1e-9, most: 16_384 }))
+        pool.install(|| {
+            render_film(&panes(true, 20), Transport::Deterministic { cutoff: 1e-9, max_sample_surfaces: 16_384 })
+        })
     };
     let (film, report) = rendered(1);
     assert_eq!(report.by_chance, report.samples);

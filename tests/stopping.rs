@@ -43,7 +43,7 @@ fn any_threads_and_stops_on_the_way_make_the_same_bytes() {
         let scene = scene(&text);
         let mut whole = rendering(&scene, &options, 2);
         assert!(is_meant(&whole.plan().method), "{kind}: {:?}", whole.plan().because);
-        let asked = advance(&mut whole, u64::MAX);
+        let calls = advance(&mut whole, u64::MAX);
         let (expected, report) = (bytes(&whole.image(), folder.path()), whole.image().report().clone());
         assert!(report.noise.is_some_and(|noise| noise.samples >= 64), "{kind}");
         let gathers = whole.plan().method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
@@ -52,10 +52,11 @@ fn any_threads_and_stops_on_the_way_make_the_same_bytes() {
         for threads in [1, 3, 7] {
             let mut first = rendering(&scene, &options, threads);
             for _ in 0..2 {
-                advance(&mut first, (random.number() * 0.6 * asked as f64) as u64);
+                advance(&mut first, (random.number() * 0.6 * calls as f64) as u64);
                 first.save(&path).expect("a checkpoint can be written");
                 let mut next = rendering(&scene, &options, 9 - threads);
-                next.resume(&path).expect("a checkpoint can be read");
+                let resumed = next.resume(&path).expect("a checkpoint can be read");
+                assert!(!matches!(resumed, Resumed::HasMore(_)), "{kind}");
                 assert_eq!(next.done(), first.done(), "{kind}");
                 assert!(next.image().film() == first.image().film(), "{kind}");
                 first = next;
@@ -163,8 +164,8 @@ fn the_reported_noise_is_the_true_noise_and_the_bound_holds() {
 #[test]
 fn the_error_that_the_model_of_color_does_not_use_is_left_for_noise() {
     for (model, is_exact) in [("", true), (", model = { bands = 8 }", false)] {
-        let asked = ROOM.replace("samples = 40", &format!("samples = 4096, error = 0.02{model}"));
-        let plan = abbe::plan::plan(&scene(&asked));
+        let text = ROOM.replace("samples = 40", &format!("samples = 4096, error = 0.02{model}"));
+        let plan = abbe::plan::plan(&scene(&text));
         let noise = plan.method.stop.and_then(|stop| stop.noise).expect("an error is asked for");
         assert_eq!(plan.model_error == 0.0, is_exact, "{}", plan.model_error);
         let left = (0.02_f64 * 0.02 - plan.model_error * plan.model_error).max(0.0).sqrt();
@@ -368,9 +369,9 @@ fn a_render_that_ends_at_the_first_look_says_what_it_measured_and_a_later_one_no
     };
     let (samples, first, measured) = at_most(stop_at(0.9, 4096));
     assert!(samples == 64 && first == measured && first < 0.5, "{first}");
-    let asked = 0.7 * first;
-    let (samples, later, measured) = at_most(stop_at(asked, 4096));
-    assert!(samples > 64 && measured <= asked && later == asked, "{later} for {asked}");
+    let requested = 0.7 * first;
+    let (samples, later, measured) = at_most(stop_at(requested, 4096));
+    assert!(samples > 64 && measured <= requested && later == requested, "{later} for {requested}");
 }
 
 #[test]
@@ -434,8 +435,8 @@ fn on_the_way_caustics_are_as_bright_as_in_the_end_and_so_are_halves_and_varianc
     let (mut looks, mut samples) = (Vec::new(), 0);
     loop {
         // A few batches as long as photons are sent, then many pixels at once.
-        let (asked, most) = (AtomicU64::new(0), if samples % PIXELS == 0 { 3 } else { 6000 });
-        if rendering.advance_until(&|_| (), &|| asked.fetch_add(1, Ordering::Relaxed) >= most) == Advance::Finished {
+        let (calls, most) = (AtomicU64::new(0), if samples % PIXELS == 0 { 3 } else { 6000 });
+        if rendering.advance_until(&|_| (), &|| calls.fetch_add(1, Ordering::Relaxed) >= most) == Advance::Finished {
             break;
         }
         let image = rendering.image();

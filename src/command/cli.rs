@@ -155,7 +155,7 @@ struct Arguments {
 
     /// Processor threads; all if absent. The image does not depend on the number
     #[arg(long, value_name = "N", allow_negative_numbers = true,
-          value_parser = clap::value_parser!(u16).range(1..=i64::from(Options::MOST_THREADS)))]
+          value_parser = clap::value_parser!(u16).range(1..=i64::from(Options::MAX_THREADS)))]
     threads: Option<u16>,
 
     /// Write a report on the render as JSON: its plan, its time and memory, the error of the image and why it stopped
@@ -403,7 +403,7 @@ fn allowed_range(clap_report: &str) -> Option<String> {
 
 fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
     let noop = [("--plan", arguments.plan), ("--check", arguments.check)];
-    let noop = noop.into_iter().find_map(|(flag, asked)| asked.then_some(flag));
+    let noop = noop.into_iter().find_map(|(flag, is_given)| is_given.then_some(flag));
     let with_exr = noop.is_none() && (arguments.exr.is_some() || arguments.png.is_none());
     let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, noop)?;
     check_exposure(arguments.exposure)?;
@@ -428,7 +428,8 @@ fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
         Output::Image { exr, png: arguments.png.map(|path| frame_path(&path, frame)).transpose()? }
     };
     let flags = [("--json", arguments.json), ("--progress", arguments.progress.is_some())];
-    if let (Output::Image { exr: Some(exr), .. }, Some((flag, _))) = (&output, flags.iter().find(|(_, asked)| *asked))
+    if let (Output::Image { exr: Some(exr), .. }, Some((flag, _))) =
+        (&output, flags.iter().find(|(_, is_given)| *is_given))
         && is_stdio(exr)
     {
         let message = format!("{flag} and --exr - would both write to standard output");

@@ -184,12 +184,12 @@ fn difference_rows(diff: &Difference, tolerance: Option<f64>, has_photon_map: bo
 /// Describes a pixel with its values in both images.
 fn pixel_text(pixel: &WorstPixel) -> String {
     let values = |values: &[f64]| values.iter().map(|value| number(*value)).collect::<Vec<_>>().join(" ");
-    let ([x, y], [a, b]) = (pixel.at, pixel.values.each_ref().map(|of| values(of)));
+    let ([x, y], [a, b]) = (pixel.position, pixel.values.each_ref().map(|all| values(all)));
     format!("({x}, {y}): {a} and {b}")
 }
 
 fn noise_text(diff: &Difference, noise: &Noise) -> String {
-    let [pixel, channel] = noise.at;
+    let [pixel, channel] = noise.worst_place;
     let ([x, y], channel) = (diff.bounds.place(pixel), &diff.channels[channel]);
     let count_above = if noise.beyond > 0 { format!("; {} above that", noise.beyond) } else { String::new() };
     format!(

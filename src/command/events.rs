@@ -95,6 +95,7 @@ impl<'e> Event<'e> {
             Error::Io { path, .. } | Error::Decode { path, .. } | Error::Encode { path, .. } => {
                 plain(problem(error), Some(path), None)
             }
+            other => plain(problem(other), None, None),
         }
     }
 

@@ -21,8 +21,8 @@ impl Frames {
     /// Returns the number of each frame once.
     pub fn numbers(&self) -> impl Iterator<Item = u32> {
         let run_numbers = |(place, run): (usize, &Run)| {
-            let before = &self.0[..place];
-            run.numbers().filter(move |&number| !before.iter().any(|run| run.contains(number)))
+            let earlier_runs = &self.0[..place];
+            run.numbers().filter(move |&number| !earlier_runs.iter().any(|run| run.contains(number)))
         };
         self.0.iter().enumerate().flat_map(run_numbers)
     }
@@ -155,19 +155,20 @@ fn digits(text: &str) -> Option<(usize, &str)> {
 
 /// Finds the placeholder that other programs use for the number of a frame.
 fn foreign_placeholder(text: &str) -> Option<&str> {
-    let run = |of: char| {
-        let from = &text[text.find([of, of].iter().collect::<String>().as_str())?..];
-        Some(&from[..from.len() - from.trim_start_matches(of).len()])
+    let run = |letter: char| {
+        let tail = &text[text.find([letter, letter].iter().collect::<String>().as_str())?..];
+        Some(&tail[..tail.len() - tail.trim_start_matches(letter).len()])
     };
     let whole_word = |mark: &str| {
-        let ends = |at: usize| at + mark.len();
-        let (at, _) = text.match_indices(mark).find(|(at, _)| !text[ends(*at)..].starts_with(char::is_alphabetic))?;
-        let after = text[ends(at)..].trim_start_matches(|letter: char| letter.is_ascii_digit());
-        Some(&text[at..text.len() - after.len()])
+        let ends = |start: usize| start + mark.len();
+        let (start, _) =
+            text.match_indices(mark).find(|(start, _)| !text[ends(*start)..].starts_with(char::is_alphabetic))?;
+        let rest = text[ends(start)..].trim_start_matches(|letter: char| letter.is_ascii_digit());
+        Some(&text[start..text.len() - rest.len()])
     };
     let python = || {
-        let from = &text[text.find("{frame}").or_else(|| text.find("{frame:"))?..];
-        Some(&from[..=from.find('}')?])
+        let tail = &text[text.find("{frame}").or_else(|| text.find("{frame:"))?..];
+        Some(&tail[..=tail.find('}')?])
     };
     run('#')
         .or_else(|| run('@'))

@@ -36,7 +36,7 @@ pub fn completions(query: &Completions, mut command: Command) -> String {
 /// Returns the manual page of a command and all its subcommands.
 pub fn page(command: Command) -> String {
     let subcommands: Vec<Command> = command.get_subcommands().cloned().collect();
-    let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+    let examples = command.get_after_help().map(ToString::to_string).unwrap_or_default();
     let man = Man::new(command);
     let mut page = Vec::new();
     // Writing to memory cannot fail.
@@ -48,7 +48,7 @@ pub fn page(command: Command) -> String {
     page.extend(b".SH COMMANDS\n");
     subcommands.into_iter().for_each(|command| add_command(command, &mut page));
     page.extend(b".SH EXAMPLES\n");
-    page.extend(after_help(&after).bytes());
+    page.extend(after_help(&examples).bytes());
     let _ = man.render_version_section(&mut page);
     String::from_utf8_lossy(&page).into_owned()
 }
@@ -57,7 +57,7 @@ pub fn page(command: Command) -> String {
 fn add_command(command: Command, page: &mut Vec<u8>) {
     let name = command.get_bin_name().unwrap_or_else(|| command.get_name()).to_owned();
     let about = command.get_about().map(ToString::to_string).unwrap_or_default();
-    let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+    let examples = command.get_after_help().map(ToString::to_string).unwrap_or_default();
     let man = Man::new(command);
     let mut section = Vec::new();
     let _ = man.render_synopsis_section(&mut section);
@@ -70,7 +70,7 @@ fn add_command(command: Command, page: &mut Vec<u8>) {
         .filter(|line| !line.starts_with(".SH ") && !line.starts_with(".ie") && !line.starts_with(".el"));
     page.extend(format!(".SS \"{}\"\n", escaped(&name)).bytes());
     page.extend(lines.flat_map(|line| format!("{line}\n").into_bytes()));
-    page.extend(format!(".PP\n{}", after_help(&after)).bytes());
+    page.extend(format!(".PP\n{}", after_help(&examples)).bytes());
 }
 
 /// Converts the text below the options of a help to roff. What an example does is put below it, at any width.

@@ -278,12 +278,12 @@ pub fn print_written(path: &Path) {
 /// Describes in one line the error of an image that is being rendered. `more` holds the total number of samples per
 /// pixel that will be taken and the time left, if they are known.
 pub fn error_so_far(error: &ImageError, more: Option<&(u32, String)>) -> String {
-    let goal = error.asked.map_or(String::new(), |goal| format!("; {} is asked for", percent(goal)));
+    let goal = error.requested.map_or(String::new(), |goal| format!("; {} is asked for", percent(goal)));
     let more =
         more.map_or(String::new(), |(samples, left)| format!("; about {samples} samples will be taken, {left} left"));
-    let off = percent(error.at_most());
+    let bound = percent(error.at_most());
     let rare = error.noise.outlier.map_or("", |_| ", as some light is rare");
-    format!("{} samples per pixel: the image is off by at most {off}{rare}{goal}{more}", error.noise.samples)
+    format!("{} samples per pixel: the image is off by at most {bound}{rare}{goal}{more}", error.noise.samples)
 }
 
 /// Prints the error of a finished image, its sources and where the noise is worst.
@@ -297,8 +297,8 @@ fn print_error_of_image(error: &ImageError) {
     let alpha = error.alpha.map_or(String::new(), |alpha| format!(", alpha {}", percent(alpha.at_most)));
     let rest = noise.outlier.map_or("noise", |_| "noise and rare light");
     let parts = format!("color {model_error}{blur}{alpha}, the rest {rest}");
-    let off = format!("at most {at_most} in 95 of 100 renders ({parts})");
-    say(&format!("{} samples per pixel: the image is off by {off}", noise.samples));
+    let bound = format!("at most {at_most} in 95 of 100 renders ({parts})");
+    say(&format!("{} samples per pixel: the image is off by {bound}", noise.samples));
     let ([x, y], worst) = (noise.worst_tile.corner, percent(noise.worst_tile.expected));
     let alpha = error.alpha.map_or(String::new(), |alpha| format!("; that of alpha is {}", percent(alpha.expected)));
     say(&format!(

@@ -27,7 +27,7 @@ struct Counts {
     /// The time after which the render ends, finished or not.
     limit: Option<Duration>,
     /// The work that an earlier run has done.
-    before: u64,
+    done_before: u64,
     done: AtomicU64,
     /// The total work if time allows, as far as it is known.
     work: AtomicU64,
@@ -43,17 +43,17 @@ impl Counts {
     /// Returns the total work that will be done within the time limit, at the pace so far.
     fn total(&self) -> u64 {
         let (done, work) = (self.work_done(), self.work.load(Ordering::Relaxed));
-        let Some(limit) = self.limit.filter(|_| done > self.before) else { return work };
+        let Some(limit) = self.limit.filter(|_| done > self.done_before) else { return work };
         let times = limit.as_secs_f64() / self.start.elapsed().as_secs_f64();
-        let in_time = self.before + ((done - self.before) as f64 * times) as u64;
+        let in_time = self.done_before + ((done - self.done_before) as f64 * times) as u64;
         in_time.clamp(done.min(work), work)
     }
 
     /// Returns the seconds left, if they are known.
     fn remaining_seconds(&self) -> Option<f64> {
         let (done, total) = (self.work_done(), self.total().max(1));
-        let parts = [self.before, done].map(|count| count as f64 / total as f64);
-        let is_known = self.is_known.load(Ordering::Relaxed) && done > self.before;
+        let parts = [self.done_before, done].map(|count| count as f64 / total as f64);
+        let is_known = self.is_known.load(Ordering::Relaxed) && done > self.done_before;
         is_known.then(|| left(parts, self.start.elapsed().as_secs_f64()))
     }
 
@@ -75,18 +75,17 @@ const LOG_PERIOD: Duration = Duration::from_secs(5);
 impl Progress {
     /// Begins to show the progress of a render, part of which an earlier run may have done.
     pub fn new(rendering: &Rendering) -> Self {
-        let (work, before) = (rendering.work(), rendering.done());
+        let (work, done) = (rendering.work(), rendering.done());
         let counts = Arc::new(Counts {
             start: Instant::now(),
             limit: rendering.plan().method.stop.as_ref().and_then(|stop| stop.time),
-            before,
-            done: AtomicU64::new(before),
+            done_before: done,
+            done: AtomicU64::new(done),
             work: AtomicU64::new(work),
             is_known: AtomicBool::new(rendering.is_work_known()),
         });
         let is_shown = listener() == Listener::Person && std::io::stderr().is_terminal();
-        let new =
-            || ProgressBar::new(work).with_position(before).with_style(style()).with_message(counts.time_message());
+        let new = || ProgressBar::new(work).with_position(done).with_style(style()).with_message(counts.time_message());
         // Terminals that cannot move back in a line have no bar.
         let bar = is_shown.then(new).filter(|bar| !bar.is_hidden());
         BAR.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&bar);
@@ -100,7 +99,7 @@ impl Progress {
             Ticker::new(first, then, move || print(&counts))
         });
         if listener() == Listener::Farm {
-            openjd::progress(share([before, work]));
+            openjd::progress(share([done, work]));
         }
         Self { bar, ticker, counts }
     }

@@ -333,7 +333,7 @@ fn say_finished(checkpoint: &Path) {
 /// Estimates how many samples per pixel will be taken in total. Returns none if that is not known, or if there are
 /// already as many.
 fn expected_samples(rendering: &Rendering, error: Option<&ImageError>) -> Option<u32> {
-    let max = rendering.plan().method.stop.as_ref()?.most;
+    let max = rendering.plan().method.stop.as_ref()?.max_samples;
     let times = rendering.work() as f64 / rendering.done().max(1) as f64;
     scaled_up(error?.noise.samples, times, max)
 }

@@ -90,11 +90,11 @@ const LISTS: [(&str, &str); 3] = [
 
 /// Returns a message on a list whose entries are separate arguments, and how to join them.
 fn unjoined_list(given: &str, words: &[OsString]) -> Option<(String, String)> {
-    let (from, (flag, what)) = words.iter().enumerate().find_map(|(place, word)| {
+    let (start, (flag, what)) = words.iter().enumerate().find_map(|(place, word)| {
         let list = LISTS.iter().find(|(flag, _)| word == flag)?;
         Some((place + 1, list))
     })?;
-    let entries: Vec<&str> = words[from..].iter().map_while(|word| word.to_str()).collect();
+    let entries: Vec<&str> = words[start..].iter().map_while(|word| word.to_str()).collect();
     let count = entries.iter().take_while(|name| !name.starts_with('-') && !name.contains('.')).count();
     let entries: Vec<&str> = entries[..count].iter().map(|entry| entry.trim_matches(',')).collect();
     let given = given.trim_matches(',');

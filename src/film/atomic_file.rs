@@ -26,7 +26,8 @@ impl<P: Write + Seek> Destination for P {}
 ///
 /// # Errors
 /// If the file cannot be written. An existing file is then untouched, and nothing else is left behind.
-pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
+pub fn replace_file(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
+    let path = path.as_ref();
     replace_with(path, |place| place.write_all(bytes).map_err(|source| cannot_write(path, source)))
 }
 
@@ -78,7 +79,8 @@ pub(super) fn cannot_read(path: &Path, source: io::Error) -> Error {
 /// # Errors
 /// If the folder cannot be created or written to, if the path is a folder or a circular link, or if the file is
 /// write-protected.
-pub fn check_writable(path: &Path) -> Result<()> {
+pub fn check_writable(path: impl AsRef<Path>) -> Result<()> {
+    let path = path.as_ref();
     let attempt = Target::of(path).and_then(|target| match target {
         // Opening and closing a pipe would signal the end of the image to its reader.
         Target::Device if is_pipe(path) => Ok(()),

@@ -35,15 +35,15 @@ pub(crate) fn catch_panics<T, E: Display>(decode: impl FnOnce() -> Result<T, E>)
 }
 
 /// The maximum number of texels of an image: 16384 x 8192.
-pub(crate) const MOST_TEXELS: usize = 1 << 27;
+pub(crate) const MAX_TEXELS: usize = 1 << 27;
 
 /// The maximum number of pixels of a film, and of an image that is read.
-pub(crate) const MOST_PIXELS: usize = 1 << 28;
+pub(crate) const MAX_PIXELS: usize = 1 << 28;
 
 /// Returns the message for an image with more pixels than are read, or none if it is small enough.
-pub(crate) fn too_large(width: usize, height: usize, most: usize) -> Option<String> {
-    let message = || format!("its {width} x {height} pixels are more than {most}");
-    (width.saturating_mul(height) > most).then(message)
+pub(crate) fn too_large(width: usize, height: usize, max: usize) -> Option<String> {
+    let message = || format!("its {width} x {height} pixels are more than {max}");
+    (width.saturating_mul(height) > max).then(message)
 }
 
 /// The bytes of texels that a file of any length may claim.

@@ -122,7 +122,8 @@ pub struct Heading<'a> {
 ///
 /// # Errors
 /// If rows cannot be read, or the file cannot be encoded or written. An existing file is then untouched.
-pub fn write_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<u64> {
+pub fn write_exr(heading: Heading, rows: &mut dyn Rows, path: impl AsRef<Path>) -> Result<u64> {
+    let path = path.as_ref();
     replace_with(path, |output| exr_blocks::write(&parts(heading), rows, output, path))
 }
 
@@ -131,9 +132,9 @@ pub fn write_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<u
 ///
 /// # Errors
 /// If rows cannot be read, or the file cannot be encoded.
-pub fn encode_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<(Vec<u8>, u64)> {
+pub fn encode_exr(heading: Heading, rows: &mut dyn Rows, path: impl AsRef<Path>) -> Result<(Vec<u8>, u64)> {
     let mut bytes = Cursor::new(Vec::new());
-    let clamped = exr_blocks::write(&parts(heading), rows, &mut bytes, path)?;
+    let clamped = exr_blocks::write(&parts(heading), rows, &mut bytes, path.as_ref())?;
     Ok((bytes.into_inner(), clamped))
 }
 

@@ -59,8 +59,8 @@ pub(super) fn attributes(part: &LayerAttributes, shared: &HashMap<Text, Attribut
     ] {
         add(key, value.map(|value| value.to_string()));
     }
-    add("adoptedNeutral", part.adopted_neutral.map(|at| numbers(&[at.x(), at.y()])));
-    add("framesPerSecond", part.frames_per_second.map(|(up, down)| format!("{up}/{down}")));
+    add("adoptedNeutral", part.adopted_neutral.map(|white| numbers(&[white.x(), white.y()])));
+    add("framesPerSecond", part.frames_per_second.map(|(numerator, denominator)| format!("{numerator}/{denominator}")));
     add("worldToNDC", part.world_to_normalized_device.map(|matrix| numbers(&matrix)));
     add("multiView", part.multi_view_names.as_ref().map(|names| join_texts(names)));
     add("preview", part.preview.as_ref().map(|_| "a small picture".into()));
@@ -96,7 +96,7 @@ fn value_text(value: &AttributeValue) -> String {
         AttributeValue::F64(value) => value.to_string(),
         AttributeValue::F32(value) => value.to_string(),
         AttributeValue::I32(value) => value.to_string(),
-        AttributeValue::Rational((up, down)) => format!("{up}/{down}"),
+        AttributeValue::Rational((numerator, denominator)) => format!("{numerator}/{denominator}"),
         AttributeValue::IntVec2(v) => format!("{} {}", v.x(), v.y()),
         AttributeValue::FloatVec2(v) => numbers(&[v.x(), v.y()]),
         AttributeValue::IntVec3((x, y, z)) => format!("{x} {y} {z}"),

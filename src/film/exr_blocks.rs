@@ -222,10 +222,10 @@ fn deflate(bytes: Vec<u8>) -> Vec<u8> {
     let mut separated: Vec<u8> = Vec::with_capacity(bytes.len());
     separated.extend(bytes.iter().step_by(2));
     separated.extend(bytes.iter().skip(1).step_by(2));
-    let mut before = separated.first().copied().unwrap_or_default();
+    let mut previous = separated.first().copied().unwrap_or_default();
     for byte in separated.iter_mut().skip(1) {
-        let original = std::mem::replace(byte, byte.wrapping_sub(before).wrapping_add(128));
-        before = original;
+        let original = std::mem::replace(byte, byte.wrapping_sub(previous).wrapping_add(128));
+        previous = original;
     }
     let mut packed = vec![0; compress_bound(separated.len())];
     let (written, code) = compress_slice(&mut packed, &separated, DeflateConfig::new(DEFLATE_LEVEL));

@@ -13,7 +13,7 @@ use exr::prelude::{
 };
 
 use super::atomic_file::cannot_read;
-use super::decoder_guard::{MOST_PIXELS, catch_panics, check_claimed_sizes, fits, too_large};
+use super::decoder_guard::{MAX_PIXELS, catch_panics, check_claimed_sizes, fits, too_large};
 use super::exr_attributes::{attributes, primaries, text};
 use super::exr_layer::{BEAUTY, ExrLayer};
 use super::exr_part::{Channel, Part, PixelBounds};
@@ -21,13 +21,13 @@ use crate::error::{Error, Result, has_extension, nearest, nearest_file};
 use crate::spectrum::Primaries;
 
 /// The largest file size that is read: 4 GiB.
-const MOST_BYTES: u64 = 1 << 32;
+const MAX_BYTES: u64 = 1 << 32;
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// The signatures of other image formats.
 const OTHER_FORMATS: [(&[u8], &str); 3] = [(b"\x89PNG", "PNG"), (b"\xff\xd8\xff", "JPEG"), (b"#?", "Radiance picture")];
 
 /// An OpenEXR file, with all its parts.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ExrFile {
     /// Size of the file in bytes.
     pub length: usize,
@@ -48,7 +48,8 @@ impl ExrFile {
     /// [`Error::Arguments`] if the file does not exist or is clearly something else, such as a scene or a PNG;
     /// [`Error::Decode`] if it is no OpenEXR file, incomplete, or of an unsupported kind; [`Error::Io`] if reading
     /// fails.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
         Self::of_bytes(&bytes(path)?, path)
     }
 
@@ -56,7 +57,8 @@ impl ExrFile {
     ///
     /// # Errors
     /// [`Error::Decode`] if they are no OpenEXR file, incomplete, or of an unsupported kind.
-    pub fn of_bytes(bytes: &[u8], path: &Path) -> Result<Self> {
+    pub fn of_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
         match catch_panics(|| Ok::<_, String>(Self::decode(bytes))) {
             Ok(Ok(file)) => Ok(file),
             Ok(Err(exr::error::Error::NotSupported(what))) => {
@@ -96,7 +98,8 @@ impl ExrFile {
     ///
     /// # Errors
     /// The errors of [`read`](Self::read).
-    pub fn outline(path: &Path) -> Result<Option<(Self, String)>> {
+    pub fn outline(path: impl AsRef<Path>) -> Result<Option<(Self, String)>> {
+        let path = path.as_ref();
         let bytes = bytes(path)?;
         let described = catch_panics(|| MetaData::read_from_buffered(Cursor::new(&bytes), false));
         let headers = described.map_err(|reason| decode_error(path, &reason))?.headers;
@@ -146,7 +149,8 @@ impl ExrFile {
             let at_root: Vec<&Channel> = part.channels.iter().filter(|channel| channel.layer.is_empty()).collect();
             let find_beauty = |letters: [&str; 4]| {
                 let is_color = |channel: &&Channel| letters.contains(&channel.name.as_str());
-                let (color, alone): (Vec<&Channel>, Vec<&Channel>) = at_root.iter().partition(|it| is_color(it));
+                let (color, alone): (Vec<&Channel>, Vec<&Channel>) =
+                    at_root.iter().partition(|channel| is_color(channel));
                 let beauty = ExrLayer::new(BEAUTY, part, color);
                 beauty.color().is_some().then_some((beauty, alone))
             };
@@ -160,8 +164,8 @@ impl ExrFile {
             names.sort_unstable();
             names.dedup();
             for name in names.into_iter().filter(|name| !name.is_empty()) {
-                let inside = part.channels.iter().filter(|channel| channel.layer == name);
-                layers.push(ExrLayer::new(name, part, inside.collect()));
+                let members = part.channels.iter().filter(|channel| channel.layer == name);
+                layers.push(ExrLayer::new(name, part, members.collect()));
             }
         }
         layers
@@ -183,8 +187,8 @@ impl ExrFile {
             let first = named(BEAUTY).unwrap_or(0);
             return Ok(layers.swap_remove(first));
         };
-        if let Some(at) = named(requested) {
-            return Ok(layers.swap_remove(at));
+        if let Some(index) = named(requested) {
+            return Ok(layers.swap_remove(index));
         }
         for part in &self.parts {
             if let Some(channel) = part.channels.iter().find(|channel| channel.full_name() == requested) {
@@ -205,11 +209,11 @@ impl ExrFile {
         let mut spectra = self.layers().into_iter().filter_map(|layer| Some((layer.bands_nm()?, layer)));
         let (centers, layer) = spectra.find(|(_, layer)| is_named(layer))?;
         let distance = |center: f64| (center - nm).abs();
-        let at = (0..centers.len()).min_by(|&a, &b| distance(centers[a]).total_cmp(&distance(centers[b])))?;
-        let others = centers.iter().filter(|&&other| other != centers[at]);
-        let step = others.map(|other| (other - centers[at]).abs()).fold(f64::INFINITY, f64::min);
-        let band = layer.channels[at];
-        (2.0 * distance(centers[at]) <= step).then(|| ExrLayer::new(&band.full_name(), layer.part, vec![band]))
+        let index = (0..centers.len()).min_by(|&a, &b| distance(centers[a]).total_cmp(&distance(centers[b])))?;
+        let others = centers.iter().filter(|&&other| other != centers[index]);
+        let step = others.map(|other| (other - centers[index]).abs()).fold(f64::INFINITY, f64::min);
+        let band = layer.channels[index];
+        (2.0 * distance(centers[index]) <= step).then(|| ExrLayer::new(&band.full_name(), layer.part, vec![band]))
     }
 
     /// Returns the error for a missing layer. It suggests the closest name and lists all layers, and `others` that may
@@ -249,12 +253,12 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
     let read = File::open(path).and_then(|mut file| {
         (&mut file).take(MAGIC.len() as u64).read_to_end(&mut start)?;
         if start == MAGIC {
-            file.take(MOST_BYTES - MAGIC.len() as u64 + 1).read_to_end(&mut start)?;
+            file.take(MAX_BYTES - MAGIC.len() as u64 + 1).read_to_end(&mut start)?;
         }
         Ok(())
     });
     match read.map_err(|error| (error.kind(), error)) {
-        Ok(()) if start.len() as u64 > MOST_BYTES => {
+        Ok(()) if start.len() as u64 > MAX_BYTES => {
             let message = "it is larger than 4 GiB, the most that can be read".into();
             Err(Error::Decode { path: path.to_owned(), message })
         }
@@ -290,7 +294,7 @@ fn why_unread(headers: &[Header]) -> Option<String> {
         Header { channels, .. } if channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) => {
             Some("channel subsampling, by which several pixels share a value".into())
         }
-        Header { layer_size, .. } => too_large(layer_size.width(), layer_size.height(), MOST_PIXELS),
+        Header { layer_size, .. } => too_large(layer_size.width(), layer_size.height(), MAX_PIXELS),
     };
     headers.iter().find_map(part_reason)
 }

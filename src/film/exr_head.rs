@@ -59,26 +59,26 @@ struct Attributes {
 }
 
 fn attributes(file: &[u8]) -> Attributes {
-    let text_end = |from: usize| from + file[from..].iter().position(|&byte| byte == 0).unwrap_or(0) + 1;
+    let text_end = |start: usize| start + file[start..].iter().position(|&byte| byte == 0).unwrap_or(0) + 1;
     let is_multipart = file[5] & MULTIPART_BIT != 0;
-    let (mut at, mut by_part) = (HEADER_START, Vec::new());
+    let (mut position, mut by_part) = (HEADER_START, Vec::new());
     loop {
         let mut entries = Vec::new();
-        while file[at] != 0 {
-            let size_at = text_end(text_end(at));
+        while file[position] != 0 {
+            let size_at = text_end(text_end(position));
             let size = u32::from_le_bytes([file[size_at], file[size_at + 1], file[size_at + 2], file[size_at + 3]]);
             let end = size_at + 4 + size as usize;
-            entries.push(at..end);
-            at = end;
+            entries.push(position..end);
+            position = end;
         }
-        at += 1;
+        position += 1;
         // The list of headers of a multipart file ends with an empty header.
         if is_multipart && entries.is_empty() {
-            return Attributes { by_part, end: at };
+            return Attributes { by_part, end: position };
         }
         by_part.push(entries);
         if !is_multipart {
-            return Attributes { by_part, end: at };
+            return Attributes { by_part, end: position };
         }
     }
 }

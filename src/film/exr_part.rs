@@ -49,7 +49,7 @@ impl PixelBounds {
 }
 
 /// One image of a file, with its own channels.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Part {
     /// The name of the part, which multipart files specify.
     pub name: Option<String>,
@@ -88,7 +88,7 @@ impl Part {
 }
 
 /// One value per pixel.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Channel {
     /// The prefix before the last dot of the full name. Empty at the root.
     pub layer: String,
@@ -112,9 +112,9 @@ impl Channel {
 
     fn with_pixels(&self, places: impl Iterator<Item = usize>) -> Self {
         let samples = match &self.samples {
-            FlatSamples::F16(values) => FlatSamples::F16(places.map(|at| values[at]).collect()),
-            FlatSamples::F32(values) => FlatSamples::F32(places.map(|at| values[at]).collect()),
-            FlatSamples::U32(values) => FlatSamples::U32(places.map(|at| values[at]).collect()),
+            FlatSamples::F16(values) => FlatSamples::F16(places.map(|index| values[index]).collect()),
+            FlatSamples::F32(values) => FlatSamples::F32(places.map(|index| values[index]).collect()),
+            FlatSamples::U32(values) => FlatSamples::U32(places.map(|index| values[index]).collect()),
         };
         Self { layer: self.layer.clone(), name: self.name.clone(), sampling: self.sampling, samples }
     }

@@ -24,7 +24,8 @@ use crate::error::Result;
 ///
 /// # Errors
 /// If rows cannot be read, or the file cannot be encoded or written. An existing file is then untouched.
-pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<()> {
+pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: impl AsRef<Path>) -> Result<()> {
+    let path = path.as_ref();
     let film = heading.film;
     let Some(spectral) = &film.spectral else { return Ok(()) };
     let bands = (0..spectral.components()).flat_map(|component| {

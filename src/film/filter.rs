@@ -15,6 +15,7 @@ use crate::math::{DVec2, sample_disk};
 /// # or { tent = { radius = 1 } }, { blackman-harris = { radius = 1.5 } }, or { mitchell = { b = 0, c = 0.5 } }
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Filter {
     /// Uniform over the pixel.
     #[default]

@@ -95,6 +95,7 @@ impl Precision {
 
 /// The compression of the values. It is lossless unless stated otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Compression {
     /// No compression: the largest files, and the fastest to write.
     None,

@@ -6,6 +6,7 @@ use crate::error::nearest;
 
 /// A layer, or several of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Layer {
     /// Light that reaches the camera straight from emitting surfaces: `L E` in Heckbert's notation.
     Emission,
@@ -306,7 +307,7 @@ impl LayerImage {
 }
 
 /// The longest channel name that every reader preserves.
-pub const LONGEST_NAME: usize = 31;
+pub const MAX_NAME_BYTES: usize = 31;
 
 /// Returns the name of a light's layer: `light_` and the light's name, in which `_` replaces all characters except
 /// letters and digits.

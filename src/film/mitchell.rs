@@ -93,8 +93,8 @@ impl Mitchell {
             return x * ((cubic / 4.0 * x + square / 3.0) * squared + (6.0 - 2.0 * b)) / 6.0;
         }
         let t = RADIUS - x;
-        let beyond = t * t * t * (2.0 * c - (b + 6.0 * c) * t / 4.0) / 6.0;
-        let beyond = if t < self.sign_change() { beyond } else { 2.0 * self.negative_integral() - beyond };
-        0.5 * self.absolute_integral() - beyond
+        let tail = t * t * t * (2.0 * c - (b + 6.0 * c) * t / 4.0) / 6.0;
+        let tail = if t < self.sign_change() { tail } else { 2.0 * self.negative_integral() - tail };
+        0.5 * self.absolute_integral() - tail
     }
 }

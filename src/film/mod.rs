@@ -39,7 +39,7 @@ pub use exr_spectral::write_spectral_exr;
 pub use filter::Filter;
 pub use format::{Compression, Format, Precision};
 pub use image::{DEPTH_OF_NOTHING, Film, Pixel, Sample};
-pub use layers::{FirstSurface, LONGEST_NAME, Layer, LayerImage, layer_elsewhere, light_layer_name, polarization};
+pub use layers::{FirstSurface, Layer, LayerImage, MAX_NAME_BYTES, layer_elsewhere, light_layer_name, polarization};
 pub use mitchell::Mitchell;
 pub use picture::{film_png, png, write_png};
 pub use rows::Rows;
@@ -51,5 +51,5 @@ pub use tile_values::TileValues;
 pub use window::{Overscan, Window};
 
 pub(crate) use blocks::{BlockReader, BlockWriter, Kind, write_blocks};
-pub(crate) use decoder_guard::{MOST_PIXELS, MOST_TEXELS, catch_panics, check_claimed_sizes, fits, too_large};
+pub(crate) use decoder_guard::{MAX_PIXELS, MAX_TEXELS, catch_panics, check_claimed_sizes, fits, too_large};
 pub(crate) use exr_attributes::{primaries as exr_primaries, text as exr_text};

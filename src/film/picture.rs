@@ -9,7 +9,8 @@ use crate::spectrum::{apply, encode_srgb};
 ///
 /// # Errors
 /// If the file cannot be written. Nothing is then left behind.
-pub fn write_png(film: &Film, exposure: f64, path: &Path) -> Result<()> {
+pub fn write_png(film: &Film, exposure: f64, path: impl AsRef<Path>) -> Result<()> {
+    let path = path.as_ref();
     replace_file(path, &film_png(film, exposure, path)?)
 }
 
@@ -17,7 +18,7 @@ pub fn write_png(film: &Film, exposure: f64, path: &Path) -> Result<()> {
 ///
 /// # Errors
 /// If the encoder refuses the size.
-pub fn film_png(film: &Film, exposure: f64, path: &Path) -> Result<Vec<u8>> {
+pub fn film_png(film: &Film, exposure: f64, path: impl AsRef<Path>) -> Result<Vec<u8>> {
     let gain = libm::exp2(exposure);
     let to_rec709 = film.color_space.to_rec709();
     let encode_pixel =
@@ -31,7 +32,7 @@ pub fn film_png(film: &Film, exposure: f64, path: &Path) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// If the encoder refuses the size.
-pub fn png(bytes: &[u8], [width, height]: [u32; 2], path: &Path) -> Result<Vec<u8>> {
+pub fn png(bytes: &[u8], [width, height]: [u32; 2], path: impl AsRef<Path>) -> Result<Vec<u8>> {
     let encode = || {
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, width, height);
@@ -44,5 +45,6 @@ pub fn png(bytes: &[u8], [width, height]: [u32; 2], path: &Path) -> Result<Vec<u
         writer.finish()?;
         Ok(file)
     };
-    encode().map_err(|error: png::EncodingError| Error::Encode { path: path.to_owned(), message: error.to_string() })
+    let failed = |message: String| Error::Encode { path: path.as_ref().to_owned(), message };
+    encode().map_err(|error: png::EncodingError| failed(error.to_string()))
 }

@@ -13,7 +13,7 @@ pub const TELL_VARIANCE: u32 = 4;
 /// the weights sum to 1 for any s. Weights of a and -a would have the same expectation, but s would be visible: for the
 /// plain cubic with 64 samples, as 2 % of noise. Dividing by their sum would hide s, but be biased, and undefined if as
 /// many samples are subtracted as added, which happens in one of eight pixels with 2 samples.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleWeights {
     counts: [u32; 2],
     /// The integral of the filter's absolute value.
@@ -40,11 +40,13 @@ impl SampleWeights {
     }
 
     /// Returns the weights of a part of these samples on its own.
+    #[must_use]
     pub fn of_part(&self, counts: [u32; 2]) -> Self {
         Self::with_integral(self.absolute, counts)
     }
 
     /// Returns the weights of the samples outside a part.
+    #[must_use]
     pub fn of_others(&self, counts: [u32; 2]) -> Self {
         self.of_part([0, 1].map(|i| self.counts[i].saturating_sub(counts[i])))
     }

@@ -10,7 +10,7 @@ const BLOCK: u32 = 16;
 ///
 /// Aligned blocks of 16 samples are summed sequentially, and the blocks are the leaves of a binary tree. The error
 /// therefore grows with the logarithm of the count.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PassSum {
     block: Entry,
     /// Entry i, if present, is the sum of 2^i blocks.
@@ -21,14 +21,14 @@ pub struct PassSum {
 }
 
 /// The sum of a pixel's passes, in the order in which they were rendered.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PixelSum {
     total: Entry,
     kept: u32,
     nearest: f64,
 }
 
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Entry {
     rgb: [f64; 3],
     met: u32,
@@ -126,7 +126,7 @@ impl PixelSum {
     /// Returns the pixel: the mean over the samples that were kept, including the subtracted ones, plus `extra`, light
     /// that is already a mean. The depth is that of the added samples.
     pub fn pixel(&self, subtracted: &Self, weights: &SampleWeights, extra: [f64; 3]) -> Pixel {
-        let mean = |of: &dyn Fn(&Self) -> f64| weights.sum([of(self), of(subtracted)]) / weights.taken();
+        let mean = |value: &dyn Fn(&Self) -> f64| weights.sum([value(self), value(subtracted)]) / weights.taken();
         Pixel {
             rgb: std::array::from_fn(|i| stored(mean(&|sum| sum.total.rgb[i]) + extra[i])),
             alpha: mean(&|sum| sum.total.met.into()).clamp(0.0, 1.0) as f32,

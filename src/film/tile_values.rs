@@ -8,7 +8,7 @@ use super::spectral::SpectralImage;
 use super::window::Window;
 
 /// A tile's pixels, row by row, with their values in each layer and in the spectral image.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TileValues {
     /// The pixels of the image.
     pub pixels: Vec<Pixel>,

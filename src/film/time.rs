@@ -11,7 +11,7 @@ const DAY_SECONDS: u64 = 86_400;
 /// The algorithm is `civil_from_days` of H. Hinnant, *chrono-Compatible Low-Level Date Algorithms* (2013). Years begin
 /// in March, so that a leap day is the last day of its year.
 pub(super) fn cap_date(time: SystemTime) -> String {
-    let seconds = time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let seconds = time.duration_since(UNIX_EPOCH).map_or(0, |elapsed| elapsed.as_secs());
     let (hour, minute, second) = (seconds / 3600 % 24, seconds / 60 % 60, seconds % 60);
     // Days since 0000-03-01. An era has 400 years.
     let days = seconds / DAY_SECONDS + 719_468;

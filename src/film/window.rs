@@ -23,7 +23,7 @@ impl Window {
     /// Returns the cell that contains a pixel, of `side` x `side` cells counted row by row. The pixel is relative to
     /// the window's corner.
     pub fn cell_of(&self, side: u32, [x, y]: [u32; 2]) -> usize {
-        let cell = |at: u32, size: u32| (u64::from(at) * u64::from(side) / u64::from(size)) as usize;
+        let cell = |coordinate: u32, size: u32| (u64::from(coordinate) * u64::from(side) / u64::from(size)) as usize;
         cell(y, self.height) * side as usize + cell(x, self.width)
     }
 

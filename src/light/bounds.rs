@@ -8,7 +8,7 @@ use crate::math::{Bounds, DVec3};
 use crate::shape::{Polygon, Shape};
 
 /// What a light tree uses of a light.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightBounds {
     /// The box around it.
     pub bounds: Bounds,

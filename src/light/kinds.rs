@@ -12,6 +12,7 @@ pub type LightId = usize;
 
 /// Something that shines.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Light<S> {
     /// A surface that shines.
     Area(Area<S>),

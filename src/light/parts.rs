@@ -1,6 +1,7 @@
 //! The parts of a light whose shape has several, such as the triangles of a mesh.
 
 use std::collections::HashMap;
+use std::fmt;
 use std::sync::Arc;
 
 use super::{LightBounds, LightTree};
@@ -26,6 +27,12 @@ struct PartDistributions {
 /// The parts of known meshes, for all placements by similarity transforms: these keep each part's share of the light.
 #[derive(Default)]
 pub struct MeshPartsCache(HashMap<*const Mesh, (Arc<Mesh>, Option<Arc<PartDistributions>>)>);
+
+impl fmt::Debug for MeshPartsCache {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.debug_struct("MeshPartsCache").field("meshes", &self.0.len()).finish_non_exhaustive()
+    }
+}
 
 impl MeshPartsCache {
     /// Returns the parts of a mesh that emits evenly.

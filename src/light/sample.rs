@@ -52,7 +52,7 @@ pub struct LeSample {
 }
 
 /// A point of an emissive surface.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmissionPoint {
     /// The point.
     pub point: SurfacePoint,

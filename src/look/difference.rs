@@ -15,7 +15,8 @@ const MSE_OFFSET: f64 = 0.01;
 const MAX_MATRIX_ERROR: f64 = 1e-3;
 
 /// The difference between two images. Pixels with a value that is not finite are left out, except from `torn`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Difference {
     /// The compared pixels: those that both images have.
     pub bounds: PixelBounds,
@@ -82,7 +83,7 @@ pub struct ColorDifference {
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorstPixel {
     /// Column and row in the full image.
-    pub at: [i64; 2],
+    pub position: [i64; 2],
     /// The values of the first and of the second image.
     pub values: [Vec<f64>; 2],
 }
@@ -96,7 +97,7 @@ pub struct WorstPixel {
 /// [`Error::Arguments`] if one of the files has no such layer, if sizes, channels or color spaces differ, or if the
 /// images have no pixel in common.
 pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> Result<Difference> {
-    let mattes = layer.map(|requested| files.map(|file| Mattes::within(file, requested)));
+    let mattes = layer.map(|requested| files.map(|file| Mattes::name_of_layer(file, requested)));
     let layer = mattes.and_then(|[a, b]| a.filter(|_| a == b)).or(layer);
     let layers = match [0, 1].map(|i| files[i].layer(layer, shown[i])) {
         [Ok(a), Ok(b)] => [a, b],
@@ -119,12 +120,12 @@ pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> R
 fn compare_mattes(files: [&ExrFile; 2], requested: &str, shown: [&str; 2], missing: Error) -> Result<Difference> {
     let all = files.map(Mattes::all);
     let [Some((a, one)), Some((b, _))] = all.each_ref().map(|all| Mattes::named(all, requested)) else {
-        let lacks_layer = |at: &usize| {
-            files[*at].layer(Some(requested), "").is_err() && Mattes::named(&all[*at], requested).is_none()
+        let lacks_layer = |file: &usize| {
+            files[*file].layer(Some(requested), "").is_err() && Mattes::named(&all[*file], requested).is_none()
         };
-        let names = |at: usize| all[at].iter().map(Mattes::name).collect::<Vec<_>>();
-        let listed = (0..2).find(lacks_layer).filter(|at| !all[*at].is_empty());
-        return Err(listed.map_or(missing, |at| files[at].no_layer(requested, shown[at], &names(at))));
+        let names = |file: usize| all[file].iter().map(Mattes::name).collect::<Vec<_>>();
+        let listed = (0..2).find(lacks_layer).filter(|file| !all[*file].is_empty());
+        return Err(listed.map_or(missing, |file| files[file].no_layer(requested, shown[file], &names(file))));
     };
     if let Some(found) = compare_common(files, [a, b].map(|mattes| mattes.part.bounds), Some(requested), shown) {
         return found;
@@ -166,10 +167,11 @@ fn compare_layers(
     if let [Some(first), Some(second)] = [0, 1].map(|i| NoisyImage::new(files[i], &layers[i]))
         && layers[0].name == BEAUTY
     {
-        let finite = |at: usize| [&a, &b].iter().all(|channels| channels.iter().all(|one| one.at(at).is_finite()));
-        found.noise = Some(Noise::new([&first, &second], |at| !finite(at)));
-        let min_samples = |at: usize| Some(first.sample_count(at)?.min(second.sample_count(at)?));
-        let by_chance = |at: usize| Some(2.0 * libm::pow(0.25, min_samples(at)?));
+        let finite =
+            |index: usize| [&a, &b].iter().all(|channels| channels.iter().all(|one| one.at(index).is_finite()));
+        found.noise = Some(Noise::new([&first, &second], |index| !finite(index)));
+        let min_samples = |index: usize| Some(first.sample_count(index)?.min(second.sample_count(index)?));
+        let by_chance = |index: usize| Some(2.0 * libm::pow(0.25, min_samples(index)?));
         let by_chance = (0..found.absolute.len()).map(by_chance).sum();
         found.alpha = found.alpha.map(|alpha| AlphaDifference { opposite_by_chance: by_chance, ..alpha });
     }
@@ -214,7 +216,7 @@ fn layers_apart(files: [&ExrFile; 2]) -> Vec<String> {
         let Some(common) = bounds[0].common(&bounds[1]) else { continue };
         let differs = |one: &Channel| {
             let other = b.channels.iter().find(|other| other.name == one.name);
-            let mut places = (0..common.pixels()).map(|at| bounds.map(|bounds| bounds.index(common.place(at))));
+            let mut places = (0..common.pixels()).map(|index| bounds.map(|bounds| bounds.index(common.place(index))));
             other.is_some_and(|other| !places.all(|[a, b]| is_same(one.at(a), other.at(b))))
         };
         if a.channels.iter().any(|one| differs(one)) {
@@ -280,19 +282,19 @@ fn value_difference([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference
         noise: None,
         absolute: Vec::with_capacity(bounds.pixels()),
     };
-    let place = |at: usize| {
-        let of = |channels: &[&Channel]| channels.iter().map(|channel| channel.at(at)).collect();
-        WorstPixel { at: bounds.place(at), values: [of(a), of(b)] }
+    let place = |index: usize| {
+        let values_of = |channels: &[&Channel]| channels.iter().map(|channel| channel.at(index)).collect();
+        WorstPixel { position: bounds.place(index), values: [values_of(a), values_of(b)] }
     };
-    for at in 0..bounds.pixels() {
-        let pairs = || a.iter().zip(b).map(|(a, b)| (a.at(at), b.at(at)));
+    for index in 0..bounds.pixels() {
+        let pairs = || a.iter().zip(b).map(|(a, b)| (a.at(index), b.at(index)));
         let is_equal = pairs().all(|(a, b)| is_same(a, b));
         found.is_equal &= is_equal;
         if pairs().any(|(a, b)| !(a.is_finite() && b.is_finite())) {
             found.left_out += 1;
             found.torn += usize::from(!is_equal);
             if !is_equal && found.first_torn.is_none() {
-                found.first_torn = Some(place(at));
+                found.first_torn = Some(place(index));
             }
             found.absolute.push(if is_equal { 0.0 } else { f64::INFINITY });
             continue;
@@ -308,7 +310,7 @@ fn value_difference([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference
         found.absolute.push(absolute);
         if error > most {
             most = error;
-            found.worst = Some(place(at));
+            found.worst = Some(place(index));
         }
     }
     found.relative_mse = squares / values.max(1) as f64;
@@ -321,7 +323,7 @@ fn alpha_difference(layers: &[ExrLayer; 2], bounds: PixelBounds) -> Option<Alpha
     let (a, b) = (a?, b?);
     let found = value_difference([&[a], &[b]], bounds);
     let largest = found.absolute.iter().copied().fold(0.0, f64::max);
-    let is_opposite = |at: &usize| [[0.0, 1.0], [1.0, 0.0]].contains(&[a.at(*at), b.at(*at)]);
+    let is_opposite = |index: &usize| [[0.0, 1.0], [1.0, 0.0]].contains(&[a.at(*index), b.at(*index)]);
     let opposite = (0..found.absolute.len()).filter(is_opposite).count();
     let result = AlphaDifference { largest, relative_mse: found.relative_mse, opposite, opposite_by_chance: None };
     (!found.is_equal).then_some(result)
@@ -330,8 +332,8 @@ fn alpha_difference(layers: &[ExrLayer; 2], bounds: PixelBounds) -> Option<Alpha
 fn color_difference(files: [&ExrFile; 2], colors: [&[&Channel]; 2], value_difference: &Difference) -> ColorDifference {
     let matrices = files.map(|file| to_rec709(file).0);
     let (mut sum, mut worst, mut clipped, mut count) = (0.0, 0.0f64, 0usize, 0usize);
-    for at in 0..value_difference.absolute.len() {
-        let values = [0, 1].map(|i| [0, 1, 2].map(|channel| colors[i][channel].at(at)));
+    for index in 0..value_difference.absolute.len() {
+        let values = [0, 1].map(|i| [0, 1, 2].map(|channel| colors[i][channel].at(index)));
         if !values.as_flattened().iter().all(|x| x.is_finite()) {
             continue;
         }
@@ -377,12 +379,12 @@ impl Difference {
             (Some(alpha), Some(tolerance)) => alpha.largest.is_finite() && alpha.relative_mse <= tolerance,
             (Some(alpha), None) => self.relative_mse > 0.0 && !alpha.contradicts(),
         };
-        let within = match (tolerance, &self.noise) {
+        let is_close = match (tolerance, &self.noise) {
             (Some(tolerance), _) => self.relative_mse <= tolerance,
             (None, Some(noise)) => noise.agrees(),
             (None, None) => false,
         };
-        within && alpha_fits && self.torn == 0
+        is_close && alpha_fits && self.torn == 0
     }
 
     /// Returns the largest difference of each pixel as a gray picture, and the difference that is shown as white: the

@@ -11,7 +11,7 @@ const MAX_LISTED: usize = 20;
 ///
 /// Cryptomatte specification 1.2.0: layers `CryptoObject00`, `CryptoObject01` .. hold pairs of a name's ID and its
 /// coverage, and an attribute holds the names.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Mattes<'f> {
     name: &'f str,
     /// The part that contains the mattes.
@@ -58,15 +58,15 @@ impl<'f> Mattes<'f> {
 
     /// Returns the kind of mattes that a layer of a file holds, such as `CryptoObject` for `CryptoObject00`. The values
     /// of such a layer are IDs of names, not colors.
-    pub fn within(file: &'f ExrFile, layer: &str) -> Option<&'f str> {
+    pub fn name_of_layer(file: &'f ExrFile, layer: &str) -> Option<&'f str> {
         Self::all(file).iter().find(|mattes| mattes.has_layer(layer)).map(Self::name)
     }
 
     /// Returns a picture of every name in its own color, weighted by its coverage, and black where there is nothing.
     pub fn picture(&self) -> Picture {
-        let pixel = |at: usize| {
+        let pixel = |index: usize| {
             self.ranks.iter().fold([0.0; 3], |sum: [f64; 3], [numbers, covered]| {
-                let (color, covered) = (color(number(numbers, at)), coverage(covered, at));
+                let (color, covered) = (color(number(numbers, index)), coverage(covered, index));
                 std::array::from_fn(|i| sum[i] + covered * color[i])
             })
         };
@@ -83,7 +83,7 @@ impl<'f> Mattes<'f> {
             None if self.names.is_empty() => id(requested),
             None => return Err(self.unknown_name(requested, shown)),
         };
-        Ok(Picture::of_grays(self.width(), (0..self.part.bounds.pixels()).map(|at| self.coverage_of(known, at))))
+        Ok(Picture::of_grays(self.width(), (0..self.part.bounds.pixels()).map(|index| self.coverage_of(known, index))))
     }
 
     /// Finds the requested kind of mattes, and the name of a single matte: for `CryptoObject.ball` it is `ball`.
@@ -105,23 +105,25 @@ impl<'f> Mattes<'f> {
         {
             return Err(a.unknown_name(requested, shown[0]));
         }
-        let both = |known: u32, at: usize| [a, b].map(|own| own.coverage_of(known, at));
-        let furthest = |at: usize| {
-            let numbers = [a, b].into_iter().flat_map(|own| own.ranks.iter().map(|[numbers, _]| number(numbers, at)));
-            let pairs = numbers.filter(|known| *known != 0).map(|known| both(known, at));
+        let both = |known: u32, index: usize| [a, b].map(|own| own.coverage_of(known, index));
+        let furthest = |index: usize| {
+            let numbers =
+                [a, b].into_iter().flat_map(|own| own.ranks.iter().map(|[numbers, _]| number(numbers, index)));
+            let pairs = numbers.filter(|known| *known != 0).map(|known| both(known, index));
             let distance = |[a, b]: [f64; 2]| (a - b).abs();
             pairs.reduce(|most, next| if distance(next) > distance(most) { next } else { most }).unwrap_or_default()
         };
         let known = one.map(id);
-        let pairs = (0..a.part.bounds.pixels()).map(|at| known.map_or_else(|| furthest(at), |known| both(known, at)));
+        let pairs =
+            (0..a.part.bounds.pixels()).map(|index| known.map_or_else(|| furthest(index), |known| both(known, index)));
         let (first, second) = pairs.map(|pair| pair.map(|covered| covered as f32)).map(Into::into).unzip();
         Ok([first, second].map(|values| Channel::of_values(one.unwrap_or("coverage"), values)))
     }
 
     /// Returns the coverage of an ID in a pixel.
-    fn coverage_of(&self, known: u32, at: usize) -> f64 {
-        let matching = self.ranks.iter().filter(|[numbers, _]| number(numbers, at) == known);
-        matching.map(|[_, covered]| coverage(covered, at)).sum::<f64>().min(1.0)
+    fn coverage_of(&self, known: u32, index: usize) -> f64 {
+        let matching = self.ranks.iter().filter(|[numbers, _]| number(numbers, index) == known);
+        matching.map(|[_, covered]| coverage(covered, index)).sum::<f64>().min(1.0)
     }
 
     fn width(&self) -> usize {
@@ -161,12 +163,12 @@ fn names(manifest: &str) -> BTreeMap<String, u32> {
 }
 
 /// Returns the ID of a name. 0 stands for nothing.
-fn number(channel: &Channel, at: usize) -> u32 {
-    (channel.at(at) as f32).to_bits()
+fn number(channel: &Channel, index: usize) -> u32 {
+    (channel.at(index) as f32).to_bits()
 }
 
-fn coverage(channel: &Channel, at: usize) -> f64 {
-    let covered = channel.at(at);
+fn coverage(channel: &Channel, index: usize) -> f64 {
+    let covered = channel.at(index);
     if covered.is_nan() { 0.0 } else { covered.clamp(0.0, 1.0) }
 }
 

@@ -62,9 +62,9 @@ impl Misexposure {
     pub fn of_layer(file: &ExrFile, layer: &ExrLayer, exposure: Exposure) -> Option<Self> {
         let (color, (to_rec709, _)) = (layer.color()?, to_rec709(file));
         let alpha = layer.channel("a");
-        let alpha = |at: usize| alpha.map_or(0.0, |alpha| alpha.at(at) as f32);
+        let alpha = |index: usize| alpha.map_or(0.0, |alpha| alpha.at(index) as f32);
         let pixels = (0..layer.part.bounds.pixels())
-            .map(|at| (apply(&to_rec709, color.map(|channel| channel.at(at))), alpha(at)));
+            .map(|index| (apply(&to_rec709, color.map(|channel| channel.at(index))), alpha(index)));
         Counts::count(exposure, pixels).misexposure()
     }
 }
@@ -103,12 +103,12 @@ impl LitCounts {
 
     /// Returns the exposure at which three quarters of the pixels have at most middle gray.
     fn fitting_stops(&self) -> i32 {
-        let below = self.by_stops.iter().scan(0, |sum, count| {
+        let darker = self.by_stops.iter().scan(0, |sum, count| {
             *sum += count;
             Some(*sum)
         });
         MIDDLE_GRAY_STOPS
-            - STOP_RANGE.zip(below).find(|(_, below)| 4 * below >= 3 * self.all).map_or(0, |(stops, _)| stops)
+            - STOP_RANGE.zip(darker).find(|(_, darker)| 4 * darker >= 3 * self.all).map_or(0, |(stops, _)| stops)
     }
 }
 
@@ -138,13 +138,13 @@ impl Counts {
     /// are not white. If black is intended, something is visible.
     fn misexposure(&self) -> Option<Misexposure> {
         let (lit, covered) = (&self.lit, &self.covered);
-        let (shows, of) = match covered.is_white() {
+        let (shows, counts) = match covered.is_white() {
             true if lit.is_white() && 2 * lit.white > self.all => (Shows::White, lit),
             true if 3 * covered.all > self.all => (Shows::WhiteObjects, covered),
             _ if 20 * lit.all > self.all && 1000 * self.seen <= self.all => (Shows::Black, lit),
             _ => return None,
         };
-        Some(Misexposure { shows, stops: of.fitting_stops() })
+        Some(Misexposure { shows, stops: counts.fitting_stops() })
     }
 }
 

@@ -26,7 +26,7 @@ pub struct Noise {
     /// The z that is farthest from 0.
     pub worst: f64,
     /// The pixel with the worst z, counted row by row, and the index of its channel.
-    pub at: [usize; 2],
+    pub worst_place: [usize; 2],
     /// The number of values beyond the threshold.
     pub beyond: usize,
     /// The number of values that have no variance in either image, but differ by more than rounding.
@@ -83,13 +83,13 @@ impl<'f> NoisyImage<'f> {
         let own_variance = self.variance(channel, pixel);
         let [columns, rows] = self.size;
         let [column, row] = [pixel % columns, pixel / columns];
-        let neighborhood = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
+        let neighborhood = |index: usize, count: usize| index.saturating_sub(1)..(index + 2).min(count);
         let neighbors =
             neighborhood(row, rows).flat_map(|y| neighborhood(column, columns).map(move |x| y * columns + x));
         if own_variance > 0.0 {
-            let mut around: SmallVec<[f64; 9]> = neighbors.map(|other| self.variance(channel, other)).collect();
-            let middle = around.len() / 2;
-            return own_variance.max(0.5 * *around.select_nth_unstable_by(middle, f64::total_cmp).1);
+            let mut variances: SmallVec<[f64; 9]> = neighbors.map(|other| self.variance(channel, other)).collect();
+            let middle = variances.len() / 2;
+            return own_variance.max(0.5 * *variances.select_nth_unstable_by(middle, f64::total_cmp).1);
         }
         let Some(sample_count) = self.sample_count(pixel) else { return own_variance };
         let value = self.colors[channel].at(pixel);
@@ -125,7 +125,8 @@ impl Noise {
         let is_equal = |a: f64, b: f64| (a - b).abs() <= rounding * a.abs().max(b.abs());
         let (channels, [columns, rows]) = (noisy[0].colors.len(), noisy[0].size);
         let (mut all, mut tests) = (Vec::new(), channels);
-        let mut found = Self { threshold: 0.0, worst: 0.0, at: [0; 2], beyond: 0, changed: 0, means: Vec::new() };
+        let mut found =
+            Self { threshold: 0.0, worst: 0.0, worst_place: [0; 2], beyond: 0, changed: 0, means: Vec::new() };
         for channel in 0..channels {
             let (mut sums, mut variance) = ([0.0; 2], 0.0);
             for pixel in (0..columns * rows).filter(|pixel| !is_left_out(*pixel)) {
@@ -147,7 +148,7 @@ impl Noise {
                 let z = normal_equivalent((a - b) / total.sqrt(), freedom);
                 all.push(z);
                 if z.abs() > found.worst.abs() {
-                    (found.worst, found.at) = (z, [pixel, channel]);
+                    (found.worst, found.worst_place) = (z, [pixel, channel]);
                 }
             }
             let [a, b] = sums;

@@ -41,7 +41,7 @@ impl Picture {
             let expose =
                 |rgb: [f64; 3]| apply(&to_rec709, rgb.map(|x| x * gain)).map(|x| exposure.tone.shown(x) as f32);
             let all = 0..layer.part.bounds.pixels();
-            let pixels = all.map(|at| expose(color.map(|channel| channel.at(at)))).collect();
+            let pixels = all.map(|index| expose(color.map(|channel| channel.at(index)))).collect();
             return (Self { width, pixels, is_light: true }, remarks.into_iter().collect());
         }
         let (mut planes, mut remarks, is_direction) = (Vec::new(), Vec::new(), is_direction(layer));
@@ -57,9 +57,9 @@ impl Picture {
             }
             planes.push(stretch(channel, low, high));
         }
-        let pixel = |at: usize| match &planes[..] {
-            [gray] => [gray[at]; 3],
-            planes => std::array::from_fn(|i| planes.get(i).map_or(0.0, |plane| plane[at])),
+        let pixel = |index: usize| match &planes[..] {
+            [gray] => [gray[index]; 3],
+            planes => std::array::from_fn(|i| planes.get(i).map_or(0.0, |plane| plane[index])),
         };
         let pixels = (0..planes.first().map_or(0, Vec::len)).map(pixel).collect();
         (Self { width, pixels, is_light: false }, remarks)
@@ -91,14 +91,14 @@ impl Picture {
     pub fn scaled(&self, width: usize, height: usize) -> Self {
         let [across, down] = [shares(self.width, width), shares(self.height(), height)];
         let mean = |shares: &[(usize, f32)], pixel: &dyn Fn(usize) -> [f32; 3]| {
-            shares.iter().fold([0.0; 3], |sum: [f32; 3], &(at, share)| {
-                let pixel = pixel(at);
+            shares.iter().fold([0.0; 3], |sum: [f32; 3], &(index, share)| {
+                let pixel = pixel(index);
                 std::array::from_fn(|i| sum[i] + share * pixel[i])
             })
         };
         let rows = self.pixels.chunks_exact(self.width);
-        let narrow: Vec<[f32; 3]> = rows.flat_map(|row| across.iter().map(|x| mean(x, &|at| row[at]))).collect();
-        let column = |y: &[(usize, f32)], x: usize| mean(y, &|at| narrow[at * width + x]);
+        let narrow: Vec<[f32; 3]> = rows.flat_map(|row| across.iter().map(|x| mean(x, &|index| row[index]))).collect();
+        let column = |y: &[(usize, f32)], x: usize| mean(y, &|index| narrow[index * width + x]);
         let pixels = down.iter().flat_map(|y| (0..width).map(move |x| column(y, x))).collect();
         Self { width, pixels, is_light: self.is_light }
     }
@@ -113,7 +113,8 @@ impl Picture {
     ///
     /// # Errors
     /// If the file cannot be written. Nothing is then left behind.
-    pub fn write_png(&self, path: &Path) -> Result<()> {
+    pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
         replace_file(path, &self.encode(path)?)
     }
 
@@ -132,15 +133,15 @@ impl Picture {
 }
 
 /// Returns, for each of `to` pixels, which of `from` pixels it covers and how large a share each of these has in it.
-fn shares(from: usize, to: usize) -> Vec<Vec<(usize, f32)>> {
-    let step = from as f64 / to as f64;
+fn shares(old_size: usize, new_size: usize) -> Vec<Vec<(usize, f32)>> {
+    let step = old_size as f64 / new_size as f64;
     let share = |i: usize| {
         let (low, high) = (i as f64 * step, (i + 1) as f64 * step);
-        let covered = (low as usize)..(libm::ceil(high) as usize).min(from);
-        let part = |at: usize| high.min((at + 1) as f64) - low.max(at as f64);
-        covered.map(|at| (at, (part(at) / step) as f32)).collect()
+        let covered = (low as usize)..(libm::ceil(high) as usize).min(old_size);
+        let part = |index: usize| high.min((index + 1) as f64) - low.max(index as f64);
+        covered.map(|index| (index, (part(index) / step) as f32)).collect()
     };
-    (0..to).map(share).collect()
+    (0..new_size).map(share).collect()
 }
 
 /// Returns whether a layer holds unit vectors: normals of any kind, recognized by the names that renderers give them.
@@ -198,12 +199,15 @@ mod tests {
 
     #[test]
     fn the_shares_of_an_area_are_all_of_it() {
-        for (from, to) in [(7, 3), (3, 7), (1920, 80), (81, 80), (1, 1)] {
-            let shares = shares(from, to);
-            assert_eq!(shares.len(), to);
+        for (old_size, new_size) in [(7, 3), (3, 7), (1920, 80), (81, 80), (1, 1)] {
+            let shares = shares(old_size, new_size);
+            assert_eq!(shares.len(), new_size);
             for share in shares {
-                assert!((share.iter().map(|(_, part)| part).sum::<f32>() - 1.0).abs() < 1e-5, "{from} to {to}");
-                assert!(share.iter().all(|(at, part)| *at < from && *part >= 0.0));
+                assert!(
+                    (share.iter().map(|(_, part)| part).sum::<f32>() - 1.0).abs() < 1e-5,
+                    "{old_size} to {new_size}"
+                );
+                assert!(share.iter().all(|(index, part)| *index < old_size && *part >= 0.0));
             }
         }
     }

@@ -10,6 +10,7 @@ use crate::spectrum::{Curve, Lanes, Quantity, Table};
 
 /// What a surface does with light.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Material<S> {
     /// Scatters evenly in all directions.
     Diffuse(Diffuse<S>),

@@ -38,16 +38,19 @@ impl Lobes {
     pub const NON_DELTA_TRANSMISSION: Self = Self::GLOSSY_TRANSMISSION.union(Self::NARROW_TRANSMISSION);
 
     /// Returns the kinds that are in either set.
+    #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
     /// Returns the kinds that are in both sets.
+    #[must_use]
     pub const fn intersection(self, kinds: Self) -> Self {
         Self(self.0 & kinds.0)
     }
 
     /// Returns the kinds that are not in the other set.
+    #[must_use]
     pub const fn without(self, kinds: Self) -> Self {
         Self(self.0 & !kinds.0)
     }

@@ -135,6 +135,7 @@ impl Block<f64> {
     }
 
     /// Returns the block multiplied by a factor.
+    #[must_use]
     pub fn times(self, factor: f64) -> Self {
         Self { a: self.a * factor, d: self.d * factor, c: self.c * factor, q: self.q * factor }
     }

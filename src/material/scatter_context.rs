@@ -88,6 +88,7 @@ impl<const N: usize> ScatterContext<'_, N> {
     }
 
     /// Returns the context of the same surface seen from its other side.
+    #[must_use]
     pub fn turned_around(self) -> Self {
         let [here, beyond] = self.direction_indices;
         let (incident, new_beyond) = (self.beyond, self.incident);

@@ -153,6 +153,7 @@ impl Stack {
     }
 
     /// Returns the layers seen from the other side.
+    #[must_use]
     pub fn turned_around(&self) -> Self {
         Self { layers: self.layers.iter().rev().copied().collect(), ..*self }
     }

@@ -28,11 +28,13 @@ impl Bounds {
     }
 
     /// Returns the smallest box that contains both boxes.
+    #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
     /// Returns the overlap of both boxes, which is empty if they do not meet.
+    #[must_use]
     pub fn intersection(self, other: Self) -> Self {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
     }
@@ -61,6 +63,7 @@ impl Bounds {
     /// Returns the box enlarged so that it contains every computed point of a surface inside it.
     ///
     /// `roundings` is the number of chained roundings in the computation of such a point.
+    #[must_use]
     pub fn padded(self, roundings: u32) -> Self {
         let pad = self.min.abs().max(self.max.abs()) * super::gamma(roundings);
         Self { min: self.min - pad, max: self.max + pad }

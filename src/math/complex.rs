@@ -24,17 +24,20 @@ impl Complex {
     }
 
     /// Returns the conjugate.
+    #[must_use]
     pub fn conjugate(self) -> Self {
         Self::new(self.re, -self.im)
     }
 
     /// Returns the number multiplied by i.
+    #[must_use]
     pub fn times_i(self) -> Self {
         Self::new(-self.im, self.re)
     }
 
     /// Returns the square root whose imaginary part is not above 0, computed without cancellation (Kahan 1987, *Branch
     /// Cuts for Complex Elementary Functions*).
+    #[must_use]
     pub fn decaying_root(self) -> Self {
         let modulus = self.norm_squared().sqrt();
         let (re, im) = if self.re >= 0.0 {

@@ -1,7 +1,7 @@
 use super::DVec3;
 
 /// A right-handed orthonormal frame about a unit normal; local z is the normal.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     tangent: DVec3,
     bitangent: DVec3,

@@ -16,6 +16,7 @@ impl BranchKey {
     pub const CAMERA: Self = Self(0);
 
     /// Returns the key of the `index`-th branch from here.
+    #[must_use]
     pub fn child(self, index: usize) -> Self {
         Self(mix_bits(self.0 ^ (index as u64 + 1)))
     }

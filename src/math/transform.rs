@@ -55,6 +55,7 @@ impl Transform {
     }
 
     /// Returns this map followed by another.
+    #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         Self { linear: next.linear * self.linear, translation: next.linear * self.translation + next.translation }
     }

@@ -7,6 +7,7 @@ use crate::spectrum::{Basis, Draw, Emission, MAX_LANES, Quantity, Upsampler, Wav
 
 /// A spectral model, with the largest color error that it is predicted to make.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Candidate {
     /// What its lanes stand for.
     pub basis: Basis,

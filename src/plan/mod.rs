@@ -40,6 +40,7 @@ pub use candidates::Candidate;
 
 /// How to render a scene and, in words, why.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Plan {
     /// What the tracer is to do.
     pub method: Method,

@@ -11,7 +11,7 @@ const MIN_SAMPLES: u32 = 8;
 /// Fewest camera samples of an image whose error is trusted: 64 in one pixel would often miss a small lamp.
 const MIN_TRUSTED_SAMPLES: u32 = 4096;
 /// Most samples where the scene does not specify them.
-const MOST: u32 = 65_536;
+const MAX_SAMPLES: u32 = 65_536;
 /// Samples for which photons are counted: their number per sample is the same, however many samples there will be.
 pub(super) const NOMINAL_SAMPLES: u32 = 1024;
 /// The least share of the error that is left for noise: where the model of color misses a third of it.
@@ -22,14 +22,19 @@ const MIN_NOISE_SHARE: f64 = 0.942_809_041_582_063_4;
 /// The model of color may miss a third of the error. What it does not miss is left for noise, as squares add up.
 pub(super) fn stop(render: &RenderText, window: Window, model_error: f64) -> Option<Stop> {
     let RenderText { error, time, samples, is_part, .. } = *render;
-    let most = samples.unwrap_or(MOST) / MIN_SAMPLES * MIN_SAMPLES;
+    let most = samples.unwrap_or(MAX_SAMPLES) / MIN_SAMPLES * MIN_SAMPLES;
     let min_samples = if time.is_some() { MIN_SAMPLES } else { FIRST_LOOK };
     let is_requested = error.is_some() || time.is_some();
     let pixels = window.width.saturating_mul(window.height).max(1);
     let least = MIN_TRUSTED_SAMPLES.div_ceil(pixels).clamp(FIRST_LOOK.min(most), most);
     let noise =
         error.map(|error| (error * error - model_error * model_error).max(0.0).sqrt().max(MIN_NOISE_SHARE * error));
-    (is_requested && most >= min_samples && !is_part).then_some(Stop { noise, time, least, most })
+    (is_requested && most >= min_samples && !is_part).then_some(Stop {
+        noise,
+        time,
+        min_samples: least,
+        max_samples: most,
+    })
 }
 
 /// Returns the explanation for the user.
@@ -57,7 +62,8 @@ pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>, model_error: f64
     let time_rule = |time: std::time::Duration| {
         format!("after {} and at least {MIN_SAMPLES} samples per pixel", format_time(time.as_secs_f64()))
     };
-    let rules = [error.map(error_rule), time.map(time_rule), Some(format!("at {} samples per pixel", stop.most))];
+    let rules =
+        [error.map(error_rule), time.map(time_rule), Some(format!("at {} samples per pixel", stop.max_samples))];
     let rules: Vec<String> = rules.into_iter().flatten().collect();
     Some(format!("stops {}, whichever comes first", rules.join(", or ")))
 }

@@ -14,7 +14,7 @@ const CUTOFF: f64 = 1e-9;
 /// Most surfaces that a camera sample of deterministic transport may hit: eight times what a mean one may.
 const MAX_SURFACES: u64 = 16_384;
 /// Transport that leaves nothing to chance.
-const DETERMINISTIC: Transport = Transport::Deterministic { cutoff: CUTOFF, most: MAX_SURFACES };
+const DETERMINISTIC: Transport = Transport::Deterministic { cutoff: CUTOFF, max_sample_surfaces: MAX_SURFACES };
 /// Weight above which a path splits into all its branches (row W5 of the stability catalog).
 const SPLIT: f64 = 0.05;
 /// Weight below which paths are ended at random.

@@ -36,9 +36,7 @@ pub(super) fn to_exception(error: Error) -> PyErr {
             }
             None => PyOSError::new_err(format!("cannot {doing} {}: {source}", path.display())),
         },
-        error @ (Error::Decode { .. } | Error::Encode { .. }) => {
-            RenderError::new_err((error.to_string(), None::<String>))
-        }
+        error => RenderError::new_err((error.to_string(), None::<String>)),
     }
 }
 

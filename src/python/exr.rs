@@ -99,8 +99,8 @@ impl Exr {
     /// Writes an 8-bit PNG, brightened by 2^`exposure`.
     fn write_png(&self, py: Python<'_>, path: PathBuf, exposure: f64) -> PyResult<()> {
         prepare_output(&path, "png")?;
-        let (file, of, stops) = (self.file.clone(), self.path.clone(), stops(exposure)?);
-        work::run(py, move || picture(&file, &of, stops)?.write_png(&path))?.map_err(to_exception)
+        let (file, source, stops) = (self.file.clone(), self.path.clone(), stops(exposure)?);
+        work::run(py, move || picture(&file, &source, stops)?.write_png(&path))?.map_err(to_exception)
     }
 
     /// Raises `TypeError`, because an image cannot be pickled.
@@ -180,7 +180,7 @@ fn fields(py: Python<'_>, found: Difference, tolerance: Option<f64>) -> PyResult
     fields.set_item("brightness", found.brightness)?;
     fields.set_item("mean_de2000", found.color.map(|color| color.mean))?;
     fields.set_item("worst_de2000", found.color.map(|color| color.worst))?;
-    fields.set_item("worst_pixel", found.worst.as_ref().map(|worst| (worst.at[0], worst.at[1])))?;
+    fields.set_item("worst_pixel", found.worst.as_ref().map(|worst| (worst.position[0], worst.position[1])))?;
     fields.set_item("left_out", found.left_out)?;
     fields.set_item("torn", found.torn)?;
     fields.set_item("worst_z", found.noise.as_ref().map(|noise| noise.worst))?;

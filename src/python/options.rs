@@ -18,7 +18,7 @@ use super::text::short_repr;
 /// If an argument has a value that is not allowed.
 pub(super) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
     let threads: Option<usize> = number(given, "threads", "a whole number of 1 or more")?;
-    let max = Options::MOST_THREADS;
+    let max = Options::MAX_THREADS;
     if threads.is_some_and(|threads| !(1..=usize::from(max)).contains(&threads)) {
         return refuse(format!("a render has 1 to {max} threads"), "leave threads out to use all processors");
     }

@@ -56,8 +56,8 @@ impl Plane {
     /// Creates a plane that owns its contiguous numbers.
     pub(super) fn owned<N: Number>(numbers: Vec<N>, shape: Vec<usize>) -> Self {
         let numbers = Arc::new(numbers);
-        let within = |axis: usize| shape[axis + 1..].iter().product::<usize>();
-        let strides = (0..shape.len()).map(|axis| within(axis) * size_of::<N>()).collect();
+        let step = |axis: usize| shape[axis + 1..].iter().product::<usize>();
+        let strides = (0..shape.len()).map(|axis| step(axis) * size_of::<N>()).collect();
         let address = numbers.as_ptr().expose_provenance();
         Self { _owner: numbers, address, shape, strides, kind: N::KIND }
     }

@@ -26,8 +26,8 @@ const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Plans a render, and returns the plan as JSON and the number of threads that it would use.
 #[pyfunction]
-pub(super) fn plan(py: Python<'_>, scene: &Scene, asked: &Bound<'_, PyDict>) -> PyResult<(String, usize)> {
-    let (scene, options) = (scene.0.clone(), options(asked)?);
+pub(super) fn plan(py: Python<'_>, scene: &Scene, settings: &Bound<'_, PyDict>) -> PyResult<(String, usize)> {
+    let (scene, options) = (scene.0.clone(), options(settings)?);
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = options.threads.unwrap_or(processors).clamp(1, processors);
     let planned = move || -> Result<String> {
@@ -43,7 +43,7 @@ pub(super) fn plan(py: Python<'_>, scene: &Scene, asked: &Bound<'_, PyDict>) -> 
 pub(super) fn render(
     py: Python<'_>,
     scene: &Scene,
-    asked: &Bound<'_, PyDict>,
+    settings: &Bound<'_, PyDict>,
     progress: Option<Bound<'_, PyAny>>,
     checkpoint: Option<PathBuf>,
     every: &Bound<'_, PyAny>,
@@ -56,7 +56,7 @@ pub(super) fn render(
         return refuse("there is no checkpoint to resume from", "name its file: checkpoint=\"image.checkpoint\"");
     }
     let keeps = checkpoint.is_some();
-    let job = Job { scene: scene.0.clone(), options: options(asked)?, checkpoint, state: state.clone() };
+    let job = Job { scene: scene.0.clone(), options: options(settings)?, checkpoint, state: state.clone() };
     let work = Work::begin(move || job.run())?;
     let mut next = Instant::now() + PERIOD;
     let rendered = work.finish(py, &mut || match &progress {

@@ -11,7 +11,8 @@ use crate::plan::Plan;
 use crate::trace::Report;
 
 /// How a scene will be rendered.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct PlanAccount<'a> {
     /// How spectra are represented.
     pub model: String,
@@ -40,7 +41,7 @@ impl<'a> PlanAccount<'a> {
         Self {
             model: method.basis.name(),
             transport: method.transport.name(),
-            samples: method.stop.as_ref().map_or(method.samples, |stop| stop.most),
+            samples: method.stop.as_ref().map_or(method.samples, |stop| stop.max_samples),
             photons: is_known.then(|| pass.map_or(0, |pass| pass.photons) + map_photons),
             processor_seconds: is_known.then_some(plan.processor_time.as_secs_f64()),
             model_error: plan.model_error,
@@ -51,7 +52,8 @@ impl<'a> PlanAccount<'a> {
 }
 
 /// What was noticed during a render.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct RenderAccount<'a> {
     /// What the tracer noticed.
     #[serde(flatten)]
@@ -83,10 +85,12 @@ impl<'a> RenderAccount<'a> {
 }
 
 /// The error of an image. All errors are relative to the image.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct ErrorAccount<'a> {
     /// The requested error, if any.
-    pub asked: Option<f64>,
+    #[serde(rename = "asked")]
+    pub requested: Option<f64>,
     /// Whether the requested error was reached. True if none was requested.
     pub is_reached: bool,
     /// What ended the render: error, time or samples.
@@ -131,9 +135,9 @@ impl<'a> ErrorAccount<'a> {
         let light = error.rare_light.as_ref();
         let (noise, outlier) = (&error.noise, error.noise.outlier.as_ref());
         Self {
-            asked: error.asked,
+            requested: error.requested,
             is_reached: error.is_reached(),
-            stopped_by: error.stopped_by.map(|by| by.name()),
+            stopped_by: error.stopped_by.map(|reason| reason.name()),
             samples_per_pixel: noise.samples,
             at_most: error.at_most(),
             noise: noise.expected,

@@ -17,6 +17,7 @@ const MAGIC: Kind = *b"AbbeCkp4";
 
 /// The result of resuming from a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use = "nothing is read from a checkpoint with more samples"]
 pub enum Resumed {
     /// The render continues from the checkpoint.
     Continues,
@@ -48,27 +49,34 @@ impl Written {
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Finished {
     /// A digest of the requested settings.
-    asked: String,
+    settings_digest: String,
     written: Vec<Written>,
 }
 
 impl Finished {
     pub(super) fn new(render: &RenderText, written: Vec<Written>) -> Self {
-        Self { asked: digest(&format!("{render:?}")), written }
+        Self { settings_digest: digest(&format!("{render:?}")), written }
     }
 }
 
 /// Returns whether a file is the checkpoint of a finished render of a scene with all options applied, which has written
 /// `files` in a certain `way`, and whether nobody has changed these since. Does not need a plan.
-pub fn has_finished(path: &Path, scene: &Scene, shard: Shard, files: &[&Path], way: &str) -> bool {
+pub fn has_finished(
+    path: impl AsRef<Path>,
+    scene: &Scene,
+    shard: Shard,
+    files: &[impl AsRef<Path>],
+    way: &str,
+) -> bool {
     let read = || -> Result<bool> {
-        let Some(mut blocks) = BlockReader::open(path, MAGIC)? else { return Ok(false) };
+        let Some(mut blocks) = BlockReader::open(path.as_ref(), MAGIC)? else { return Ok(false) };
         if !blocks.block::<Identity>()?.is_of_scene(scene, shard) {
             return Ok(false);
         }
-        let Finished { asked, written } = blocks.block()?;
-        let is_unchanged = |file: &&Path| Written::from_file(file, way).is_some_and(|file| written.contains(&file));
-        Ok(asked == digest(&format!("{:?}", scene.render)) && files.iter().all(is_unchanged))
+        let Finished { settings_digest, written } = blocks.block()?;
+        let is_unchanged = |file: &Path| Written::from_file(file, way).is_some_and(|file| written.contains(&file));
+        let has_same_settings = settings_digest == digest(&format!("{:?}", scene.render));
+        Ok(has_same_settings && files.iter().all(|file| is_unchanged(file.as_ref())))
     };
     // Any error is reported when the render tries to continue from the checkpoint.
     read().unwrap_or(false)
@@ -78,7 +86,8 @@ pub fn has_finished(path: &Path, scene: &Scene, shard: Shard, files: &[&Path], w
 ///
 /// # Errors
 /// If it cannot be read.
-pub fn is_checkpoint(path: &Path) -> Result<bool> {
+pub fn is_checkpoint(path: impl AsRef<Path>) -> Result<bool> {
+    let path = path.as_ref();
     // Opening a pipe would block.
     Ok(path.is_file() && BlockReader::open(path, MAGIC)?.is_some())
 }

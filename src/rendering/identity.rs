@@ -92,7 +92,7 @@ impl Identity {
 /// included, and so is the number of samples.
 fn sample_method(method: &Method) -> Method {
     let light_pass = method.light_pass.clone().map(|pass| LightPass { photons: 0, ..pass });
-    let stop = method.stop.as_ref().map(|_| Stop { noise: None, time: None, least: 0, most: 0 });
+    let stop = method.stop.as_ref().map(|_| Stop { noise: None, time: None, min_samples: 0, max_samples: 0 });
     let method = Method { stop, ..method.clone() };
     if method.map().is_some() { method } else { Method { samples: 0, light_pass, ..method } }
 }

@@ -104,7 +104,7 @@ impl Image {
     pub fn warnings(&self) -> Vec<String> {
         let samples = self.provenance.count(SAMPLES);
         let few = samples.and_then(|samples| few_samples(&self.format.layers, samples));
-        let is_dark = self.report.light == 0.0 && self.error.as_ref().is_none_or(|error| error.asked.is_none());
+        let is_dark = self.report.light == 0.0 && self.error.as_ref().is_none_or(|error| error.requested.is_none());
         let dark_warning = self.dark_warning.clone().filter(|_| is_dark);
         few.into_iter().chain(dark_warning).chain(warnings(&self.report, self.error.as_ref())).collect()
     }
@@ -130,7 +130,7 @@ impl Image {
     /// # Errors
     /// If the file cannot be written. An existing file is then untouched.
     pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<u64> {
-        write_exr(self.heading(), &mut &self.film, path.as_ref())
+        write_exr(self.heading(), &mut &self.film, path)
     }
 
     /// Encodes the file of [`write_exr`](Self::write_exr). Returns its bytes, and how many values became 65504.
@@ -170,7 +170,7 @@ impl Image {
     /// # Errors
     /// The errors of [`write_exr`](Self::write_exr).
     pub fn write_spectral_exr(&self, path: impl AsRef<Path>) -> Result<()> {
-        write_spectral_exr(self.heading(), &mut &self.film, path.as_ref())
+        write_spectral_exr(self.heading(), &mut &self.film, path)
     }
 
     /// Writes an 8-bit sRGB picture for viewing, brightened by 2^`exposure`.
@@ -178,7 +178,7 @@ impl Image {
     /// # Errors
     /// If the file cannot be written. An existing file is then untouched.
     pub fn write_png(&self, path: impl AsRef<Path>, exposure: f64) -> Result<()> {
-        write_png(&self.film, exposure, path.as_ref())
+        write_png(&self.film, exposure, path)
     }
 
     /// Encodes the picture that [`write_png`](Self::write_png) writes.

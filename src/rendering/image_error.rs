@@ -4,9 +4,10 @@ use crate::trace::{Estimate, FIRST_LOOK, Noise, RareLight, Stopped};
 ///
 /// Errors are relative: the root mean square over all pixels and the three film channels, divided by that of the image.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ImageError {
     /// The requested error, if any.
-    pub asked: Option<f64>,
+    pub requested: Option<f64>,
     /// The part that is due to chance.
     pub noise: Noise,
     /// The part that is due to gathered photons, which blur.
@@ -37,13 +38,13 @@ impl ImageError {
         let measured = self.noise.at_most.hypot(self.blur.at_most).hypot(self.model).max(alpha_bound);
         let is_doubtful = self.noise.samples > FIRST_LOOK || self.noise.outlier.is_some() || self.has_highlights;
         let is_chosen = self.stopped_by == Some(Stopped::Noise) && is_doubtful;
-        self.asked.filter(|_| is_chosen).map_or(measured, |asked| measured.max(asked))
+        self.requested.filter(|_| is_chosen).map_or(measured, |requested| measured.max(requested))
     }
 
     /// Returns whether the requested error was reached. True if none was requested.
     pub fn is_reached(&self) -> bool {
-        self.asked.is_none_or(|asked| {
-            self.stopped_by == Some(Stopped::Noise) && self.at_most() <= asked * (1.0 + 4.0 * f64::EPSILON)
+        self.requested.is_none_or(|requested| {
+            self.stopped_by == Some(Stopped::Noise) && self.at_most() <= requested * (1.0 + 4.0 * f64::EPSILON)
         })
     }
 }

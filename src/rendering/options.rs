@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use crate::error::{Error, Result};
-use crate::film::{LONGEST_NAME, Layer, Overscan, Shard, Window, light_layer_name};
+use crate::film::{Layer, MAX_NAME_BYTES, Overscan, Shard, Window, light_layer_name};
 use crate::scene::{FilmSettings, ModelText, PolarizationText, RenderText, Scene};
 
 /// Settings that replace the scene's own. By default they replace nothing.
@@ -33,7 +33,7 @@ pub struct Options {
     pub layers: Option<Vec<Layer>>,
     /// Whether to render spectra even if the scene does not request them.
     pub spectral: bool,
-    /// The number of processor threads, 1 to [`MOST_THREADS`](Self::MOST_THREADS); one for each processor if absent.
+    /// The number of processor threads, 1 to [`MAX_THREADS`](Self::MAX_THREADS); one for each processor if absent.
     /// The image is the same for any number.
     pub threads: Option<usize>,
     /// The part of the image's tiles that is rendered.
@@ -49,7 +49,7 @@ pub struct Options {
 
 impl Options {
     /// The maximum number of threads. Many more would exhaust a machine.
-    pub const MOST_THREADS: u16 = 1024;
+    pub const MAX_THREADS: u16 = 1024;
 
     /// Replaces the scene's settings with these.
     ///
@@ -89,10 +89,10 @@ impl Options {
 
     /// Returns the requested number of threads, or 0 for one per processor.
     pub(super) fn threads(&self) -> Result<usize> {
-        let most = Self::MOST_THREADS;
-        if self.threads.is_some_and(|threads| !(1..=usize::from(most)).contains(&threads)) {
+        let max = Self::MAX_THREADS;
+        if self.threads.is_some_and(|threads| !(1..=usize::from(max)).contains(&threads)) {
             return Error::refuse(
-                format!("a render has 1 to {most} threads"),
+                format!("a render has 1 to {max} threads"),
                 "leave threads out to use all processors",
             );
         }
@@ -132,7 +132,7 @@ fn check_film(film: &FilmSettings) -> Result<()> {
 }
 
 /// The maximum bytes of memory that layers may take: 64 GB.
-const MOST_OF_LAYERS: u64 = 64_000_000_000;
+const MAX_LAYER_BYTES: u64 = 64_000_000_000;
 
 /// Refuses layers that would exhaust the memory, cannot be rendered or do not fit the format. Also refuses lights with
 /// layer names that cannot be written.
@@ -141,7 +141,7 @@ pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
         return Error::refuse(message, &help);
     }
     let bytes = scene.layer_bytes() / u64::from(shard.count());
-    if bytes > MOST_OF_LAYERS {
+    if bytes > MAX_LAYER_BYTES {
         let gigabytes = bytes / 1_000_000_000;
         let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());
         return Error::refuse(message, "ask for fewer layers, or render a part of the image at a time with --crop");
@@ -164,7 +164,7 @@ pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
     let mut groups_by_name = BTreeMap::new();
     for group in &scene.light_groups {
         let name = light_layer_name(group);
-        if name.len() + ".R".len() > LONGEST_NAME {
+        if name.len() + ".R".len() > MAX_NAME_BYTES {
             let message = format!("the name of the layer {name} is too long for some programs");
             return Error::refuse(message, help);
         }

@@ -54,7 +54,7 @@ struct Tiles {
 ///
 /// # Errors
 /// The errors of [`Parts::open`]; [`Error::Decode`](crate::Error::Decode) if a part is damaged.
-pub fn merge(parts: &[PathBuf]) -> Result<Image> {
+pub fn merge(parts: &[impl AsRef<Path>]) -> Result<Image> {
     Parts::open(parts)?.image()
 }
 
@@ -64,15 +64,16 @@ impl Parts {
     /// # Errors
     /// [`Error::Arguments`](crate::Error::Arguments) if a part is missing or given twice, or if the parts are not of
     /// the same render; [`Error::Decode`](crate::Error::Decode) if one is damaged before its tiles.
-    pub fn open(paths: &[PathBuf]) -> Result<Self> {
-        let Some((first, others)) = paths.split_first() else {
+    pub fn open(paths: &[impl AsRef<Path>]) -> Result<Self> {
+        let mut paths = paths.iter().map(AsRef::as_ref);
+        let Some(first) = paths.next() else {
             return Error::refuse("no part of an image is given", "name all of them: render merge out.exr *.part");
         };
         let (whole, blocks) = open(first)?;
         let (count, window) = (whole.shard.count(), whole.film.window());
         let mut non_finite = whole.non_finite;
         let mut found = BTreeMap::from([(whole.shard.number(), tiles(first, blocks, whole.shard, window)?)]);
-        for path in others {
+        for path in paths {
             let (head, blocks) = open(path)?;
             if let Some(difference) = whole.difference(&head) {
                 let message = format!("{} does not belong to {}: {difference}", path.display(), first.display());
@@ -114,7 +115,7 @@ impl Parts {
     /// # Errors
     /// The errors of [`Image::write_exr`], and [`Error::Decode`](crate::Error::Decode) if a part is damaged.
     pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<u64> {
-        write_exr(self.image.heading(), &mut Strip::new(self, Some(ROWS_AT_ONCE)), path.as_ref())
+        write_exr(self.image.heading(), &mut Strip::new(self, Some(ROWS_AT_ONCE)), path)
     }
 
     /// Writes the spectra like [`Image::write_spectral_exr`] does, in as little memory. Returns whether there are any.
@@ -122,7 +123,7 @@ impl Parts {
     /// # Errors
     /// The errors of [`write_exr`](Self::write_exr).
     pub fn write_spectral_exr(&self, path: impl AsRef<Path>) -> Result<bool> {
-        write_spectral_exr(self.image.heading(), &mut Strip::new(self, Some(ROWS_AT_ONCE)), path.as_ref())?;
+        write_spectral_exr(self.image.heading(), &mut Strip::new(self, Some(ROWS_AT_ONCE)), path)?;
         Ok(self.image.film.spectral.is_some())
     }
 

@@ -131,6 +131,7 @@ impl Rendering {
     }
 
     /// Counts the time that the render may take from an earlier moment, such as before the scene was read.
+    #[must_use]
     pub fn since(mut self, began: Instant) -> Self {
         self.began = self.began.map(|_| began);
         self.passes = self.passes.since(began);
@@ -239,8 +240,8 @@ impl Rendering {
     ///
     /// # Errors
     /// The errors of [`save`](Self::save).
-    pub fn save_finished(&self, path: impl AsRef<Path>, files: &[&Path], way: &str) -> Result<()> {
-        let written: Vec<Written> = files.iter().filter_map(|file| Written::from_file(file, way)).collect();
+    pub fn save_finished(&self, path: impl AsRef<Path>, files: &[impl AsRef<Path>], way: &str) -> Result<()> {
+        let written = files.iter().filter_map(|file| Written::from_file(file.as_ref(), way)).collect();
         checkpoint::save(path.as_ref(), &self.identity, &Finished::new(&self.render, written), &self.passes)
     }
 
@@ -295,7 +296,16 @@ impl Rendering {
         let (model, stopped_by) = (self.plan.model_error, self.passes.stopped_by());
         let rare_light = run_on(&self.threads, || stopped_by.and_then(|_| self.passes.rare_light()));
         let has_highlights = !self.plan.method.highlights.is_empty();
-        Some(ImageError { asked: self.render.error, noise, blur, alpha, rare_light, has_highlights, model, stopped_by })
+        Some(ImageError {
+            requested: self.render.error,
+            noise,
+            blur,
+            alpha,
+            rare_light,
+            has_highlights,
+            model,
+            stopped_by,
+        })
     }
 
     /// Returns the image of all samples so far.
@@ -316,7 +326,7 @@ impl Rendering {
         let mut provenance = self.provenance.clone();
         provenance.set_count(SAMPLES, samples);
         provenance.set_count(NON_FINITE, report.non_finite);
-        let stopped_by = report.stopped_by.map(|by| ("stoppedBy".into(), Fact::Text(by.name().to_owned())));
+        let stopped_by = report.stopped_by.map(|reason| ("stoppedBy".into(), Fact::Text(reason.name().to_owned())));
         provenance.facts.extend(stopped_by.into_iter().chain(error.iter().flat_map(error_facts)));
         if !self.passes.is_finished() {
             provenance.facts.push(("complete".into(), Fact::Count(0)));

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 const MIN_PAUSE_FACTOR: u32 = 100;
 
 /// Schedules repeated work, such as writing a checkpoint, so that it takes at most 1 % of the time.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Timer {
     period: Option<Duration>,
     deadline: Option<Instant>,

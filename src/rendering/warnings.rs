@@ -4,7 +4,7 @@ use super::image_error::ImageError;
 use crate::film::{Layer, TELL_VARIANCE};
 use crate::look::percent;
 use crate::scene::Scene;
-use crate::trace::{MOST_MEDIA, RareLight, Report};
+use crate::trace::{MAX_MEDIA, RareLight, Report};
 
 /// Returns all warnings about a render.
 pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<String> {
@@ -24,7 +24,7 @@ pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<Strin
     if report.unmatched > 0 {
         let times = if report.unmatched == 1 { "once".into() } else { format!("{} times", report.unmatched) };
         let times = format!("{times}, light left a clear body it had not entered");
-        let crowded = format!(", or do more than {MOST_MEDIA} clear materials overlap in one place");
+        let crowded = format!(", or do more than {MAX_MEDIA} clear materials overlap in one place");
         let crowded = if report.has_many_media { &crowded } else { "" };
         warnings.push(format!("{times} and passed through undeflected: is the surface of a dielectric open{crowded}?"));
     }
@@ -61,7 +61,7 @@ pub(super) fn few_samples(layers: &[Layer], samples: u64) -> Option<String> {
 
 /// Warns of light too rare to know how much there is, unless an error was requested and is reached all the same.
 fn outlier(error: &ImageError) -> Option<String> {
-    let outlier = error.noise.outlier.filter(|_| error.asked.is_none() || !error.is_reached())?;
+    let outlier = error.noise.outlier.filter(|_| error.requested.is_none() || !error.is_reached())?;
     let ([x, y], share) = (outlier.pixel, percent(outlier.share));
     let light = error.rare_light.as_ref().map_or("light".into(), describe);
     Some(format!(
@@ -72,7 +72,7 @@ fn outlier(error: &ImageError) -> Option<String> {
 
 /// Warns that the requested error is not reached.
 fn error_not_reached(error: &ImageError) -> Option<String> {
-    let requested = error.asked.filter(|_| !error.is_reached())?;
+    let requested = error.requested.filter(|_| !error.is_reached())?;
     let why = if error.model > requested {
         format!(": the model of color alone may be off by {}", percent(error.model))
     } else if error.alpha.is_some_and(|alpha| alpha.at_most > error.noise.at_most.hypot(error.blur.at_most)) {
@@ -87,16 +87,16 @@ fn error_not_reached(error: &ImageError) -> Option<String> {
 
 /// Warns of an image without any light, whose noise is unknown.
 fn error_unknown(report: &Report, error: &ImageError) -> Option<String> {
-    let is_dark = report.light == 0.0 && error.alpha.is_none() && error.asked.is_some();
+    let is_dark = report.light == 0.0 && error.alpha.is_none() && error.requested.is_some();
     is_dark.then(|| "no light was found in any pixel, so the error of the image is unknown".into())
 }
 
 /// Describes rare light and its path.
 fn describe(light: &RareLight) -> String {
     let RareLight { name, bounces, found } = light;
-    let of = name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
-    let after = if *bounces == 1 { "after 1 bounce".into() } else { format!("after {bounces} bounces") };
-    format!("light{of} ({found} {after})")
+    let origin = name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
+    let bounce_count = if *bounces == 1 { "after 1 bounce".into() } else { format!("after {bounces} bounces") };
+    format!("light{origin} ({found} {bounce_count})")
 }
 
 #[cfg(test)]

@@ -28,6 +28,7 @@ pub struct Camera {
 
 /// The mapping from directions to positions in the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Projection {
     /// Rays from one point through a window.
     Perspective {

@@ -1,4 +1,4 @@
-use crate::film::{Filter, MOST_PIXELS, Overscan, Window};
+use crate::film::{Filter, MAX_PIXELS, Overscan, Window};
 use crate::spectrum::ColorSpace;
 
 /// Size and meaning of the image.
@@ -22,7 +22,7 @@ impl FilmSettings {
     /// Maximum number of pixels in a row or column, with the overscan.
     pub const MAX_SIDE: u32 = 65_536;
     /// Maximum number of pixels, with the overscan: 19 GB of sums and values, without layers.
-    pub const MAX_PIXELS: u64 = MOST_PIXELS as u64;
+    pub const MAX_PIXELS: u64 = MAX_PIXELS as u64;
 
     /// Returns the part of the image that is rendered.
     pub fn window(&self) -> Window {

@@ -42,7 +42,7 @@ impl Primitive {
 pub struct RayEnds {
     /// The primitive that the ray leaves. A ray that leaves a triangle cannot hit it again, so this triangle is not
     /// tested.
-    pub left: Option<Primitive>,
+    pub start: Option<Primitive>,
     /// The object of the light that the ray leads to, which does not occlude itself unless `part` is given.
     pub light: Option<u32>,
     /// The triangle of that object that the ray leads to. The object's other triangles can occlude it.

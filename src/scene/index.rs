@@ -6,7 +6,7 @@ use std::cell::Cell;
 use super::hit::{Hit, Primitive, RayEnds};
 use super::object::Object;
 use crate::math::Ray;
-use crate::shape::{Bvh, Pool, Shape, Vectors, Visitor, is_before};
+use crate::shape::{Bvh, Pool, Shape, Visitor, is_before};
 
 /// Up to this many objects are tested one by one, since a tree saves nothing there.
 const MAX_LINEAR_OBJECTS: usize = 12;
@@ -47,11 +47,11 @@ impl Index {
         objects: &[Object],
         ray: &Ray,
         distance: f64,
-        left: Option<Primitive>,
+        start: Option<Primitive>,
         accept: impl Fn(u32) -> bool,
     ) -> Option<Hit> {
-        let triangle = left.map(|left| [left.object, left.part]);
-        let left = left.unwrap_or(Primitive::NONE);
+        let triangle = start.map(|start| [start.object, start.part]);
+        let left = start.unwrap_or(Primitive::NONE);
         let pooled = self.pool.as_ref().and_then(|pool| pool.nearest(ray, distance, triangle, &accept));
         let mut nearest = pooled.map(|(object, intersection)| Hit { object, intersection });
         let limit = nearest.map_or(distance, |hit| hit.intersection.t);
@@ -82,7 +82,7 @@ impl Index {
         last_occluder: &Cell<Option<u32>>,
         accept: impl Fn(u32) -> bool,
     ) -> bool {
-        let RayEnds { left, light, part } = ends;
+        let RayEnds { start, light, part } = ends;
         // An object listed after the light's own does not hide it at an equal distance.
         let hides_at = |[object, other]: [u32; 2], t: f64| match light {
             Some(light) if light == object => part.is_some_and(|part| is_before([other, part], [t, distance])),
@@ -90,7 +90,7 @@ impl Index {
             Some(light) if light < object => t < distance,
             _ => true,
         };
-        let triangle = left.map(|left| [left.object, left.part]);
+        let triangle = start.map(|start| [start.object, start.part]);
         if self.pool.as_ref().is_some_and(|pool| pool.any(ray, distance, triangle, hides_at)) {
             return true;
         }
@@ -102,7 +102,7 @@ impl Index {
                 light => {
                     let is_later = light.is_some_and(|light| light < object);
                     let t_max = if is_later { distance.next_down() } else { distance };
-                    shape.is_crossed(ray, t_max, left.and_then(|left| left.part_of(object)))
+                    shape.is_crossed(ray, t_max, start.and_then(|start| start.part_of(object)))
                 }
             }
         };
@@ -148,7 +148,7 @@ struct ObjectVisitor<'a, F> {
 
 impl<F: FnMut(u32, f64) -> Option<f64>> Visitor for ObjectVisitor<'_, F> {
     #[inline]
-    fn visit(&mut self, _: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
+    fn visit(&mut self, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
         for &item in &self.index.tree.items()[first..first + groups] {
             t_max = (self.test)(self.index.tree_objects[item as usize], t_max)?;
         }

@@ -34,7 +34,8 @@ impl Source {
     ///
     /// # Errors
     /// If it cannot be read or is not UTF-8.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
         let shown = path.display();
         let bytes = match File::open(path).and_then(read_limited) {
             Ok(bytes) => bytes,
@@ -212,7 +213,7 @@ impl Scene {
     /// [`Error::Scene`] with all mistakes that can be found, each with its line and what to do;
     /// [`Error::Arguments`] if there is no such file.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
-        Source::read(path.as_ref())?.compile()
+        Source::read(path)?.compile()
     }
 
     /// Parses a scene from a text in the form of a scene file. Files that it names are looked up in `folder`.

@@ -5,7 +5,7 @@ use crate::math::{Bounds, DVec3, Ray, Transform, gamma};
 
 /// A plane with affine coordinates (a, b): the points `center + a u + b v`. Discs and quads are regions of such a
 /// plane.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct AffinePlane {
     pub(super) center: DVec3,
     pub(super) u: DVec3,

@@ -32,6 +32,7 @@ impl Ball {
     }
 
     /// Returns the smallest ball that contains two balls.
+    #[must_use]
     pub fn around(self, other: Self) -> Self {
         let to_other = other.center - self.center;
         let distance = to_other.length();

@@ -7,7 +7,7 @@ use crate::math::{Bounds, DVec3, Ray, Transform, UNIT_ROUNDOFF};
 /// ```toml
 /// shape.cube = { center = [0, 0.5, 0], size = 1 }            # full edges: a number, or [x, y, z]
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Cube {
     pub(super) center: DVec3,
     /// Vectors from the center to the centers of three faces.

@@ -12,7 +12,7 @@ use crate::math::{Bounds, DMat3, DVec3, Ray, horizontal_tangent, sample_disk};
 /// ```toml
 /// shape.disc = { center = [0, 0, 0], normal = [0, 1, 0], radius = 1, u = [1, 0, 0] }    # u is optional
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Disc {
     /// The plane of the disc, which fills the plane's unit circle.
     pub(super) plane: AffinePlane,

@@ -4,7 +4,7 @@ use super::{Intersection, SurfacePoint};
 use crate::math::{Bounds, DMat3, DVec3, Ray, Transform, gamma};
 
 /// A sphere after a non-uniform scale: all points `center + axes * x` with |x| = 1. Its front is the outside.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ellipsoid {
     pub(super) center: DVec3,
     axes: DMat3,

@@ -7,7 +7,7 @@ use super::ear_clipping::{MAX_CORNERS, clip_ears};
 use crate::math::{DVec2, DVec3};
 
 /// The triangles of faces. Each face is a fan about its first corner until it is cut.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Faces {
     fans: Vec<[u32; 3]>,
     /// Ranges of the triangles of each face that has several.

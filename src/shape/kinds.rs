@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::hull::Hull;
+use super::polygon::PolygonKind;
 use super::{
     Ball, Cube, Density, Disc, Ellipsoid, Instance, Intersection, Mesh, Plane, Polygon, Quad, ShapeSample, Sphere,
     SurfacePoint, Triangle,
@@ -11,6 +12,7 @@ use crate::math::{Bounds, DVec3, Ray, Transform, gamma, sample_disk, sample_sphe
 
 /// A surface.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Shape {
     /// An infinite plane.
     Plane(Plane),
@@ -201,6 +203,7 @@ impl Shape {
     }
 
     /// Returns a copy of the shape after an invertible affine map. Copies of a mesh share its triangles.
+    #[must_use]
     pub fn copied(&self, map: &Transform) -> Self {
         let shared = match self {
             Self::Mesh(mesh) if *map != Transform::IDENTITY => Instance::new(mesh.clone(), *map),
@@ -262,8 +265,8 @@ impl Shape {
         let (point, part) = match self {
             Self::Plane(_) => return None,
             Self::Sphere(sphere) => return Some(sphere.sample(from, u)),
-            Self::Triangle(triangle) => return Polygon::Triangle(triangle.clone()).sample(from, u),
-            Self::Quad(quad) => return Polygon::Parallelogram(&quad.plane).sample(from, u),
+            Self::Triangle(triangle) => return Polygon(PolygonKind::Triangle(triangle.clone())).sample(from, u),
+            Self::Quad(quad) => return Polygon(PolygonKind::Parallelogram(&quad.plane)).sample(from, u),
             Self::Ellipsoid(ellipsoid) => {
                 return ShapeSample::along(ellipsoid.point_at(sample_sphere(u)).position - from);
             }
@@ -285,8 +288,8 @@ impl Shape {
             Self::Plane(_) => return 0.0,
             Self::Sphere(sphere) => return sphere.pdf(ray),
             Self::Ellipsoid(ellipsoid) => return ellipsoid.pdf(ray),
-            Self::Triangle(triangle) => Polygon::Triangle(triangle.clone()).density(ray.origin),
-            Self::Quad(quad) => Polygon::Parallelogram(&quad.plane).density(ray.origin),
+            Self::Triangle(triangle) => Polygon(PolygonKind::Triangle(triangle.clone())).density(ray.origin),
+            Self::Quad(quad) => Polygon(PolygonKind::Parallelogram(&quad.plane)).density(ray.origin),
             Self::Disc(_) | Self::Cube(_) | Self::Mesh(_) | Self::Instance(_) => {
                 self.density_of_part(intersection.part)
             }
@@ -318,9 +321,9 @@ impl Shape {
     /// Returns one of the parts in the world, or `None` if the shape has no parts.
     pub fn part(&self, part: u32) -> Option<Polygon<'_>> {
         match self {
-            Self::Cube(cube) => Some(Polygon::Parallelogram(cube.face(part))),
+            Self::Cube(cube) => Some(Polygon(PolygonKind::Parallelogram(cube.face(part)))),
             Self::Mesh(mesh) => Some(mesh.polygon(part)),
-            Self::Instance(instance) => Some(Polygon::Triangle(instance.triangle(part))),
+            Self::Instance(instance) => Some(Polygon(PolygonKind::Triangle(instance.triangle(part)))),
             _ => None,
         }
     }

@@ -3,6 +3,7 @@ use std::sync::OnceLock;
 use super::edges::open_edges;
 use super::flipped::turned;
 use super::packed_triangles::PackedTriangles;
+use super::polygon::PolygonKind;
 use super::triangle::{Facet, tangents_over};
 use super::{Attributes, Intersection, Polygon, SurfacePoint, Triangle, Vertices};
 use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
@@ -83,8 +84,8 @@ impl Mesh {
     /// Returns one of the triangles.
     pub(super) fn polygon(&self, index: u32) -> Polygon<'_> {
         match self.facets.get(index as usize) {
-            Some(facet) => Polygon::Facet(facet),
-            None => Polygon::Triangle(self.triangle(index)),
+            Some(facet) => Polygon(PolygonKind::Facet(facet)),
+            None => Polygon(PolygonKind::Triangle(self.triangle(index))),
         }
     }
 
@@ -129,6 +130,7 @@ impl Mesh {
     }
 
     /// Returns the mesh with vertex attributes. Lists that are not empty have an entry for each vertex.
+    #[must_use]
     pub fn with(self, attributes: Attributes) -> Self {
         Self { attributes, ..self }
     }

@@ -1,9 +1,11 @@
+use std::fmt;
 use std::path::PathBuf;
 
 use super::{Attributes, Vertices};
 
 /// The contents of a mesh file.
 #[derive(Default)]
+#[non_exhaustive]
 pub struct MeshFile {
     /// Vertices, in the precision of the file.
     pub vertices: Vertices,
@@ -17,6 +19,15 @@ pub struct MeshFile {
     pub ignored: Vec<&'static str>,
     /// Other files that the mesh was read from.
     pub others: Vec<PathBuf>,
+}
+
+impl fmt::Debug for MeshFile {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        let mut shown = formatter.debug_struct("MeshFile");
+        shown.field("vertices", &self.vertices.count()).field("faces", &self.faces.len());
+        shown.field("materials", &self.materials).field("ignored", &self.ignored);
+        shown.field("others", &self.others).finish_non_exhaustive()
+    }
 }
 
 /// Rejects vertices that are not finite, or that carry something that is not finite.

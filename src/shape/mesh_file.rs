@@ -11,7 +11,8 @@ use super::mesh_data::{MeshFile, check_finite, no_such_vertex};
 ///
 /// # Errors
 /// A sentence that says what is wrong with the file.
-pub fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
+pub fn read(path: impl AsRef<Path>, smooth: bool) -> Result<MeshFile, String> {
+    let path = path.as_ref();
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_lowercase();
     if is_gzip(path) {
         return Err("it is compressed with gzip: unpack it first".into());

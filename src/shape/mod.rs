@@ -45,8 +45,8 @@ mod vertices;
 
 pub use attributes::{Attributes, vertex_normals};
 pub use ball::Ball;
-pub use bvh::{Bvh, Vectors, Visitor};
-pub(crate) use bvh::{Computation, Instructions, prefetch};
+pub use bvh::{Bvh, Visitor};
+pub(crate) use bvh::{Computation, Instructions, Vectors, prefetch};
 pub use coordinates::Coordinates;
 pub use cube::Cube;
 pub use disc::Disc;
@@ -56,6 +56,7 @@ pub use instance::Instance;
 pub use intersection::{Intersection, SurfacePoint};
 pub use kinds::{Shape, is_before};
 pub use mesh::Mesh;
+pub use mesh_data::MeshFile;
 pub use mesh_file::read as read_mesh;
 pub use plane::Plane;
 pub use polygon::Polygon;

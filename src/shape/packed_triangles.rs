@@ -1,8 +1,8 @@
 //! Triangles under a tree of boxes, in the order of its leaves, tested against a ray four at a time.
 
-use super::bvh::{Crossings, GROUP, Line, Number, prefetch};
+use super::bvh::{Crossings, GROUP, Line, Number, VectorVisitor, prefetch};
 use super::triangle::ShearedRay;
-use super::{Bvh, Intersection, Vectors, Vertices, Visitor, fragments};
+use super::{Bvh, Intersection, Vectors, Vertices, fragments};
 use crate::math::{DVec3, Ray};
 
 /// A tree over triangles, with copies of all their corners.
@@ -95,10 +95,12 @@ impl PackedTriangles {
         let line = sheared.line();
         match &self.blocks {
             Blocks::Single(blocks) => {
-                self.bvh.walk::<ORDERED>(ray, t_max, &mut Search { blocks, items, line, sheared, starts_on, take });
+                let mut search = Search { blocks, items, line, sheared, starts_on, take };
+                self.bvh.walk_with_vectors::<ORDERED>(ray, t_max, &mut search);
             }
             Blocks::Double(blocks) => {
-                self.bvh.walk::<ORDERED>(ray, t_max, &mut Search { blocks, items, line, sheared, starts_on, take });
+                let mut search = Search { blocks, items, line, sheared, starts_on, take };
+                self.bvh.walk_with_vectors::<ORDERED>(ray, t_max, &mut search);
             }
         }
     }
@@ -134,7 +136,7 @@ struct Search<'a, T, L, F> {
     take: F,
 }
 
-impl<T: Number, L: Fn(u32) -> bool, F: FnMut(Intersection, f64) -> Option<f64>> Visitor for Search<'_, T, L, F> {
+impl<T: Number, L: Fn(u32) -> bool, F: FnMut(Intersection, f64) -> Option<f64>> VectorVisitor for Search<'_, T, L, F> {
     #[inline(always)]
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
         for group in first..first + groups {

@@ -6,7 +6,7 @@ use crate::math::{Bounds, DVec3, Ray, Transform, gamma};
 /// ```toml
 /// shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
     pub(super) point: DVec3,
     normal: DVec3,

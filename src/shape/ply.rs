@@ -244,7 +244,7 @@ mod tests {
         let header =
             "ply\nformat ascii 1.0\nelement vertex 10000\nproperty float x\nproperty float y\nproperty float z\n";
         std::fs::write(&path, header.to_owned() + "end_header\n" + &"0 0 0\n".repeat(5000)).expect("a file");
-        let message = read(&path, false).err().expect("vertices are missing");
+        let message = read(&path, false).expect_err("vertices are missing");
         assert_eq!(message, "the file ends too early, while reading element 'vertex' (expected 10000, got 5000)");
     }
 }

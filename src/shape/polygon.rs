@@ -6,7 +6,11 @@ use crate::math::{Bounds, DVec3};
 
 /// A flat piece of a surface with straight edges: a shape of its own, or a part of a mesh or a cube.
 #[derive(Clone, Debug)]
-pub enum Polygon<'a> {
+pub struct Polygon<'a>(pub(super) PolygonKind<'a>);
+
+/// The kinds of polygons, by what is known of them in advance.
+#[derive(Clone, Debug)]
+pub(super) enum PolygonKind<'a> {
     /// A triangle, placed in the world.
     Triangle(Triangle),
     /// A triangle that its mesh keeps, precomputed.
@@ -18,27 +22,27 @@ pub enum Polygon<'a> {
 impl Polygon<'_> {
     /// Returns the box that the polygon fills.
     pub fn bounds(&self) -> Bounds {
-        match self {
-            Self::Triangle(triangle) | Self::Facet(Facet { triangle, .. }) => triangle.bounds(),
-            Self::Parallelogram(plane) => plane.bounds(),
+        match &self.0 {
+            PolygonKind::Triangle(triangle) | PolygonKind::Facet(Facet { triangle, .. }) => triangle.bounds(),
+            PolygonKind::Parallelogram(plane) => plane.bounds(),
         }
     }
 
     /// Returns the unit normal on the front.
     pub fn normal(&self) -> DVec3 {
-        match self {
-            Self::Triangle(triangle) => triangle.normal(),
-            Self::Facet(facet) => facet.normal,
-            Self::Parallelogram(plane) => plane.normal,
+        match &self.0 {
+            PolygonKind::Triangle(triangle) => triangle.normal(),
+            PolygonKind::Facet(facet) => facet.normal,
+            PolygonKind::Parallelogram(plane) => plane.normal,
         }
     }
 
     /// Returns the area in square scene units.
     pub fn area(&self) -> f64 {
-        match self {
-            Self::Triangle(triangle) => triangle.area(),
-            Self::Facet(facet) => facet.area,
-            Self::Parallelogram(plane) => plane.area(),
+        match &self.0 {
+            PolygonKind::Triangle(triangle) => triangle.area(),
+            PolygonKind::Facet(facet) => facet.area,
+            PolygonKind::Parallelogram(plane) => plane.area(),
         }
     }
 
@@ -48,9 +52,9 @@ impl Polygon<'_> {
         if let Some(outline) = self.outline(from) {
             return Some(ShapeSample::of_direction(outline.sample(u), 1.0 / outline.solid_angle));
         }
-        let point = match self {
-            Self::Triangle(triangle) | Self::Facet(Facet { triangle, .. }) => triangle.sample_area(u),
-            Self::Parallelogram(plane) => plane.sample_area(u),
+        let point = match &self.0 {
+            PolygonKind::Triangle(triangle) | PolygonKind::Facet(Facet { triangle, .. }) => triangle.sample_area(u),
+            PolygonKind::Parallelogram(plane) => plane.sample_area(u),
         };
         Some(ShapeSample::along(point - from)?.with_density(Density::Area(1.0 / self.area())))
     }
@@ -64,10 +68,10 @@ impl Polygon<'_> {
     }
 
     fn outline(&self, from: DVec3) -> Option<Outline> {
-        match self {
-            Self::Triangle(triangle) => triangle.outline(from),
-            Self::Facet(facet) => facet.outline(from),
-            Self::Parallelogram(plane) => plane.outline(from),
+        match &self.0 {
+            PolygonKind::Triangle(triangle) => triangle.outline(from),
+            PolygonKind::Facet(facet) => facet.outline(from),
+            PolygonKind::Parallelogram(plane) => plane.outline(from),
         }
     }
 }

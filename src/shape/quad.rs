@@ -7,7 +7,7 @@ use crate::math::{DVec3, Ray};
 /// ```toml
 /// shape.quad = { center = [0, 4, 0], u = [1, 0, 0], v = [0, 0, 1] }
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Quad {
     /// The plane of the parallelogram, which is the region |a| <= 1, |b| <= 1 of it.
     pub(super) plane: AffinePlane,

@@ -8,7 +8,7 @@ use crate::math::{Bounds, Cone, DMat3, DVec3, Ray, Transform, gamma, sample_sphe
 /// ```toml
 /// shape.sphere = { center = [0, 1, 0], radius = 1 }
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sphere {
     pub(super) center: DVec3,
     radius: f64,

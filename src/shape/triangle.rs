@@ -10,7 +10,7 @@ use crate::math::{Bounds, DVec3, Ray, Transform, gamma, sample_triangle};
 /// ```toml
 /// shape.triangle = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]] }
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Triangle {
     pub(super) points: [DVec3; 3],
 }

@@ -1,7 +1,7 @@
 use crate::math::DVec3;
 
 /// Vertices in the precision in which they were given: files hold f32, scene files and transforms f64.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Vertices {
     /// As a mesh file stores them.
     Single(Vec<[f32; 3]>),

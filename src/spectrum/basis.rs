@@ -124,6 +124,7 @@ impl Basis {
     /// are not changed.
     ///
     /// If a spectral image is wanted too, `shown` are its bands: all wavelengths in them count equally.
+    #[must_use]
     pub fn with_true_colors_under(self, lights: &[Emission], dyes: &[Dye], shown: Option<&WavelengthBands>) -> Self {
         let LaneKind::Wavelengths(functions) = &self.lanes else { return self };
         let mut lines: Vec<[f64; 2]> = self.wavelengths_nm[functions.len()..].iter().map(|&nm| [nm, 0.0]).collect();
@@ -162,6 +163,7 @@ impl Basis {
     ///
     /// # Panics
     /// If they do not fit.
+    #[must_use]
     pub fn with_heroes(self, heroes: usize, lights: &[Emission]) -> Self {
         assert!(heroes <= MAX_HEROES && self.wavelengths_nm.len() + heroes <= MAX_LANES, "{heroes} heroes do not fit");
         let heroes = Heroes { count: heroes, mixture: Arc::new(Mixture::new(lights)), collapse: false };
@@ -170,6 +172,7 @@ impl Basis {
 
     /// Draws a third of the heroes evenly over the bands of a spectral image, where the lights shine. Fixed lanes are
     /// not changed.
+    #[must_use]
     pub fn spread_over_bands(self, bands: &WavelengthBands, lights: &[Emission]) -> Self {
         let shown =
             |heroes: Heroes| Heroes { mixture: Arc::new(heroes.mixture.spread_over_bands(bands, lights)), ..heroes };
@@ -179,11 +182,13 @@ impl Basis {
     /// Refracts all lanes by the index at the d line, except where an index is given as `rgb`. Reflection and
     /// transmission still use each lane's own index. For three bands, this is the index whose reflectance at normal
     /// incidence is the mean over the band.
+    #[must_use]
     pub fn kept_together(self) -> Self {
         Self { keeps_together: true, ..self }
     }
 
     /// Prepares the basis for lights that excite dyes: heroes are also drawn where they do.
+    #[must_use]
     pub fn for_dyes(self, dyes: &[Dye], lights: &[&Curve]) -> Self {
         if self.excites || !self.has_wavelengths() {
             return self;

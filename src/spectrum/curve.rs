@@ -44,6 +44,7 @@ pub struct Curve {
 
 /// The kinds of spectra.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum CurveKind {
     /// The same value at every wavelength; as an emission, that multiple of the film's white.
     Number(f64),

@@ -19,11 +19,13 @@ impl<const N: usize> Throughput<N> {
     }
 
     /// Returns the throughput after an event that passes on a share of each lane.
+    #[must_use]
     pub fn through(self, share: Lanes<N>) -> Self {
         Self(self.0 * share)
     }
 
     /// Returns the throughput of a path that was followed with probability `1 / factor`.
+    #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         Self(self.0 * factor as f32)
     }

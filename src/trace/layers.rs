@@ -177,28 +177,30 @@ impl Layers {
 
     /// Writes the light on a shadow catcher into an empty row.
     pub(super) fn write_catcher(&self, row: &mut [f64], [with, without]: [[f64; 3]; 2]) {
-        let Some(at) = self.catcher_offset else { return };
-        row[at..at + 3].copy_from_slice(&with);
-        row[at + 3..at + 6].copy_from_slice(&without);
-        row[at + 6] = 1.0;
+        let Some(offset) = self.catcher_offset else { return };
+        row[offset..offset + 3].copy_from_slice(&with);
+        row[offset + 3..offset + 6].copy_from_slice(&without);
+        row[offset + 6] = 1.0;
     }
 
     /// Adds the light of a photon on a shadow catcher to a row.
     pub(super) fn add_caught_photon(&self, row: &mut [f64], rgb: [f64; 3]) {
-        if let Some(at) = self.catcher_offset {
-            add(&mut row[at..], rgb);
+        if let Some(offset) = self.catcher_offset {
+            add(&mut row[offset..], rgb);
         }
     }
 
     /// Returns by how much other objects change the light on a shadow catcher, if there is one. Alpha follows from it.
     pub(super) fn catcher_change(&self, row: &[f64]) -> [f64; 3] {
-        self.catcher_offset.map_or([0.0; 3], |at| [0, 1, 2].map(|channel| row[at + channel] - row[at + 3 + channel]))
+        self.catcher_offset
+            .map_or([0.0; 3], |offset| [0, 1, 2].map(|channel| row[offset + channel] - row[offset + 3 + channel]))
     }
 
     /// Returns the light of shadow catchers, from the sums of `kept` samples and what photons splat.
     pub(super) fn catcher_light(&self, sums: &[f64], splatted: &[f64], kept: f64) -> Option<CatcherLight<[f64; 3]>> {
-        let at = self.catcher_offset?;
-        let mean = |number: usize| sums[at + number] / kept + splatted.get(at + number).copied().unwrap_or_default();
+        let offset = self.catcher_offset?;
+        let mean =
+            |number: usize| sums[offset + number] / kept + splatted.get(offset + number).copied().unwrap_or_default();
         let [with, without] = [0, 3].map(|first| [0, 1, 2].map(|channel| mean(first + channel)));
         Some(CatcherLight { with_objects: with, without_objects: without, share: mean(6) })
     }
@@ -211,9 +213,9 @@ impl Layers {
 
     /// Adds the numbers of shadow catchers to sums.
     pub(super) fn add_catcher(&self, sums: &mut [f64], row: &[f64]) {
-        if let Some(at) = self.catcher_offset {
-            let more = &row[at..at + CATCHER_VALUES];
-            sums[at..at + CATCHER_VALUES].iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        if let Some(offset) = self.catcher_offset {
+            let more = &row[offset..offset + CATCHER_VALUES];
+            sums[offset..offset + CATCHER_VALUES].iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
         }
     }
 
@@ -237,8 +239,8 @@ impl Layers {
     /// Adds three numbers to a layer's numbers in a row, if the layer is requested.
     #[inline]
     pub(super) fn add_to(&self, layer: Layer, row: &mut [f64], numbers: [f64; 3]) {
-        if let Some(at) = self.offset(layer) {
-            add(&mut row[at..], numbers);
+        if let Some(offset) = self.offset(layer) {
+            add(&mut row[offset..], numbers);
         }
     }
 
@@ -254,8 +256,8 @@ impl Layers {
             self.add_to(layer, row, color.map(|x| factor * x));
         }
         let [s1, s2, s3] = stokes.map(|color| factor * self.luminance_of(&color));
-        if let Some(at) = self.offset(Layer::Polarization) {
-            add(&mut row[at + 1..], [s1, s2, s3]);
+        if let Some(offset) = self.offset(Layer::Polarization) {
+            add(&mut row[offset + 1..], [s1, s2, s3]);
         }
     }
 
@@ -282,11 +284,11 @@ impl Layers {
         if *dispersed {
             self.add_to(Layer::Dispersed, row, *rgb);
         }
-        if let Some(at) = self.offset(Layer::Polarization) {
-            row[at] += self.luminance_of(rgb);
+        if let Some(offset) = self.offset(Layer::Polarization) {
+            row[offset] += self.luminance_of(rgb);
         }
-        if let (Some(at), Some(light)) = (self.offset(Layer::Lights), light) {
-            add(&mut row[at + 3 * self.group_of[*light]..], *rgb);
+        if let (Some(offset), Some(light)) = (self.offset(Layer::Lights), light) {
+            add(&mut row[offset + 3 * self.group_of[*light]..], *rgb);
         }
     }
 }

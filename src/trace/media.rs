@@ -8,7 +8,7 @@ use crate::shape::{Plane, Shape, SurfacePoint};
 use crate::spectrum::{Draw, Lanes, Table};
 
 /// Maximum number of different media that may overlap in one place: a lens of varying index is made of many shells.
-pub const MOST_MEDIA: usize = 16;
+pub const MAX_MEDIA: usize = 16;
 
 /// The media around a point, each with the number of its bodies around the point.
 ///
@@ -16,8 +16,8 @@ pub const MOST_MEDIA: usize = 16;
 /// Dielectrics in Ray Traced Images*). Counting by material lets one body be made of many objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Media {
-    materials: [MaterialId; MOST_MEDIA],
-    counts: [u16; MOST_MEDIA],
+    materials: [MaterialId; MAX_MEDIA],
+    counts: [u16; MAX_MEDIA],
     len: u8,
 }
 
@@ -103,11 +103,11 @@ impl Media {
     /// Returns the boundary where a ray crosses a body's surface; `None` if it never entered the body, or if there is
     /// no room for another medium.
     fn boundary(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> Option<Boundary> {
-        let (here, at) = (self.inside(scene), self.slot(material));
+        let (here, slot) = (self.inside(scene), self.slot(material));
         let beyond = if enters {
-            let has_room = at.map_or((self.len as usize) < MOST_MEDIA, |at| self.counts[at] < u16::MAX);
+            let has_room = slot.map_or((self.len as usize) < MAX_MEDIA, |slot| self.counts[slot] < u16::MAX);
             has_room.then(|| strongest(scene, here.into_iter().chain([material])))?
-        } else if self.counts[at?] > 1 || here != Some(material) {
+        } else if self.counts[slot?] > 1 || here != Some(material) {
             here
         } else {
             let others = self.materials[..self.len as usize].iter().copied();
@@ -157,8 +157,8 @@ impl Media {
     fn after_entering(mut self, material: MaterialId) -> Option<Self> {
         let len = self.len as usize;
         match self.slot(material) {
-            Some(at) => self.counts[at] = self.counts[at].checked_add(1)?,
-            None if len < MOST_MEDIA => {
+            Some(slot) => self.counts[slot] = self.counts[slot].checked_add(1)?,
+            None if len < MAX_MEDIA => {
                 (self.materials[len], self.counts[len]) = (material, 1);
                 self.len += 1;
             }
@@ -169,11 +169,11 @@ impl Media {
 
     fn after_leaving(mut self, material: MaterialId) -> Option<Self> {
         let len = self.len as usize;
-        let at = self.slot(material)?;
-        self.counts[at] -= 1;
-        if self.counts[at] == 0 {
-            self.materials.copy_within(at + 1..len, at);
-            self.counts.copy_within(at + 1..len, at);
+        let slot = self.slot(material)?;
+        self.counts[slot] -= 1;
+        if self.counts[slot] == 0 {
+            self.materials.copy_within(slot + 1..len, slot);
+            self.counts.copy_within(slot + 1..len, slot);
             (self.materials[len - 1], self.counts[len - 1]) = (0, 0);
             self.len -= 1;
         }
@@ -304,7 +304,7 @@ pub(super) fn direction_indices(scene: &Scene<Table>, sides: [Option<MaterialId>
 
 /// Returns whether there are more media than may overlap in one place.
 pub(super) fn has_too_many(scene: &Scene<Table>) -> bool {
-    scene.materials.iter().filter(|named| named.material.medium().is_some()).nth(MOST_MEDIA).is_some()
+    scene.materials.iter().filter(|named| named.material.medium().is_some()).nth(MAX_MEDIA).is_some()
 }
 
 /// Returns the bodies around each light; `None` where they may differ from point to point.

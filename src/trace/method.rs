@@ -107,9 +107,9 @@ pub struct Stop {
     /// Maximum render time.
     pub time: Option<Duration>,
     /// Minimum number of camera samples per pixel for which an error is trusted.
-    pub least: u32,
+    pub min_samples: u32,
     /// Maximum number of camera samples per pixel, a multiple of eight.
-    pub most: u32,
+    pub max_samples: u32,
 }
 
 /// Photons that are sent to smooth objects, for the caustics that these cast onto what the camera sees.
@@ -167,7 +167,7 @@ pub enum Transport {
         /// Smallest weight that is followed.
         cutoff: f64,
         /// Surfaces that one camera sample may hit. Beyond them it continues at random, with the same mean.
-        most: u64,
+        max_sample_surfaces: u64,
     },
     /// All while the weight is above `split`, then one. Below `roulette`, a path survives with chance weight /
     /// roulette.

@@ -69,7 +69,7 @@ pub use image::{
     Advance, Estimate, FIRST_LOOK, Measured, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored,
     Stopped, TileNoise, bytes_of_film, render,
 };
-pub use media::MOST_MEDIA;
+pub use media::MAX_MEDIA;
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
 pub use parallel::run_on;
 pub use path_start::{SkyOpenings, SunlitPlaces};

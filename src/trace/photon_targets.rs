@@ -227,9 +227,9 @@ fn of_light(
     wholes: &[(Smoothness, Ball, Vec<FocusBall>)],
     [uniform, disk]: &[Arc<Guide>; 2],
 ) -> Vec<PhotonTarget> {
-    let target = |through: Option<&Opening>, smoothness: Smoothness, ball: &Ball, share: f64, is_part: bool| {
+    let target = |opening: Option<&Opening>, smoothness: Smoothness, ball: &Ball, share: f64, is_part: bool| {
         let source = &scene.lights[light];
-        let beam = through.map_or_else(|| source.beam(ball), |opening| source.beam_through(opening, ball))?;
+        let beam = opening.map_or_else(|| source.beam(ball), |opening| source.beam_through(opening, ball))?;
         let onward_share = match smoothness {
             Smoothness::Whole | Smoothness::Narrow => 1.0,
             Smoothness::Partial | Smoothness::NarrowPartial => COAT_REFLECTANCE,
@@ -239,12 +239,12 @@ fn of_light(
         (flux > 0.0).then_some(PhotonTarget { light, smoothness, photons: 0, share, is_part, beam, guide, flux })
     };
     let mut targets = Vec::new();
-    for through in std::iter::once(None).chain(openings.iter().map(Some)) {
+    for opening in std::iter::once(None).chain(openings.iter().map(Some)) {
         for (smooth, ball, parts) in wholes {
             let share = 1.0 - parts.iter().map(|part| part.share).sum::<f64>();
-            if let Some(whole) = target(through, *smooth, ball, share, false) {
+            if let Some(whole) = target(opening, *smooth, ball, share, false) {
                 targets.push(whole);
-                targets.extend(parts.iter().filter_map(|part| target(through, *smooth, &part.ball, part.share, true)));
+                targets.extend(parts.iter().filter_map(|part| target(opening, *smooth, &part.ball, part.share, true)));
             }
         }
     }

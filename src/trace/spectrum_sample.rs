@@ -24,7 +24,7 @@ pub(super) struct Spectrum {
 
 impl Spectrum {
     /// Returns `None` if lanes are not wavelengths.
-    pub(super) fn new(scene: &Scene<Curve>, basis: &Basis, bands: WavelengthBands, at: usize) -> Option<Self> {
+    pub(super) fn new(scene: &Scene<Curve>, basis: &Basis, bands: WavelengthBands, offset: usize) -> Option<Self> {
         let (mut distinct, mut responses) = (CurveCache::default(), Vec::new());
         let mut response_of = Vec::new();
         let dyes = scene.materials.iter().flat_map(|named| named.material.dyes());
@@ -37,7 +37,7 @@ impl Spectrum {
         let responses = responses.into_iter().collect::<Option<_>>()?;
         // In absolute light, a flat spectrum of this radiance has the luminance of white.
         let unit = scene.format.white_luminance.map_or(1.0, |white| white / (EFFICACY * y_integral()));
-        Some(Self { bands, has_stokes: scene.format.has_stokes(), offset: at, unit, response_of, responses })
+        Some(Self { bands, has_stokes: scene.format.has_stokes(), offset, unit, response_of, responses })
     }
 
     /// Returns the number of values in a row.

@@ -138,6 +138,7 @@ impl World {
     }
 
     /// Returns this world with another light pass, before any photons are sent ahead.
+    #[must_use]
     pub fn with_light_pass(&self, light_pass: Option<LightPass>) -> Self {
         let mut world = self.clone();
         world.method.light_pass = light_pass;
@@ -146,6 +147,7 @@ impl World {
     }
 
     /// Returns this world with its light pass's photons guided by what another world of the same scene has learned.
+    #[must_use]
     pub fn guided_by(mut self, guided: &Self) -> Self {
         if let (Some(targets), Some(guided)) = (&mut self.photon_targets, &guided.photon_targets) {
             targets.adopt(guided);
@@ -154,6 +156,7 @@ impl World {
     }
 
     /// Returns this world with other bright places that bounces are aimed at.
+    #[must_use]
     pub fn with_bright(&self, bright: Option<BrightPlaces>) -> Self {
         let mut world = self.clone();
         world.bright = bright.as_ref().map(AimedSampler::new);
@@ -162,6 +165,7 @@ impl World {
     }
 
     /// Returns this world with some samples aimed at highlights.
+    #[must_use]
     pub fn with_highlights(mut self, highlights: Vec<Highlight>) -> Self {
         self.highlights = Arc::new(Highlights::new(&highlights, self.scene.film.filter));
         self.method.highlights = highlights;
@@ -170,6 +174,7 @@ impl World {
 
     /// Returns this world with light vertices: paths of suns start toward sunlit places, those of skies through
     /// openings.
+    #[must_use]
     pub fn with_light_vertices(&self, sunlit: Vec<SunlitPlaces>, openings: SkyOpenings) -> Self {
         let mut world = self.clone();
         world.method = Method { light_vertices: true, sunlit, openings, ..world.method };
@@ -178,6 +183,7 @@ impl World {
     }
 
     /// Returns this world with more samples in some places and fewer in others.
+    #[must_use]
     pub fn with_density(mut self, density: Option<SampleDensity>) -> Self {
         self.method.density = density;
         self
@@ -190,12 +196,14 @@ impl World {
     }
 
     /// Returns this world with polarization traced or not.
+    #[must_use]
     pub fn with_polarization(mut self, polarization: Polarizing) -> Self {
         self.method.polarization = polarization;
         self
     }
 
     /// Returns this world with the whole format in view, whatever part is rendered: all parts then learn the same.
+    #[must_use]
     pub fn of_the_format(&self) -> Self {
         let mut world = self.clone();
         world.scene.film = world.scene.film.of_the_format();
@@ -234,6 +242,7 @@ impl World {
     }
 
     /// Returns this world with the response to each light's lanes replaced, for tests of single lanes.
+    #[must_use]
     #[doc(hidden)]
     pub fn with_responses(mut self, replace: impl Fn(&Response) -> Response) -> Self {
         self.responses = self.responses.iter().map(replace).collect();

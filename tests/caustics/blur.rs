@@ -55,15 +55,15 @@ fn renders(text: &str, map: MapPasses, samples: u32, stop: &Stop, count: u64) ->
         to: vec![Smoothness::Whole],
         map: Some(map),
     });
-    let asked = Method { samples, transport: SPLITTING, stop: Some(stop.clone()), light_pass, ..method };
-    let render_seed = |seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ());
+    let stopping_method = Method { samples, transport: SPLITTING, stop: Some(stop.clone()), light_pass, ..method };
+    let render_seed = |seed| render(&prepare(&scene, Method { seed, ..stopping_method.clone() }), &|_| ());
     parallel_map(count, render_seed)
 }
 
 const MAP: MapPasses = MapPasses { count: 8, photons: 32_768, radius: 4.0, chance: 1.0 };
 
 fn all_samples(most: u32) -> Stop {
-    Stop { noise: None, time: None, least: 64, most }
+    Stop { noise: None, time: None, min_samples: 64, max_samples: most }
 }
 
 /// Returns the mean and its standard error.
@@ -101,9 +101,9 @@ fn the_estimated_blur_agrees_with_a_closed_form_and_grows_with_the_area() {
         let blurs = pixels_of(&|x, y| blur_at(x, y, radius));
         // Relative to the blurred image.
         let blurred: Vec<f64> = sharp.iter().zip(&blurs).map(|(sharp, blur)| sharp + blur).collect();
-        let asked = square(&twice) / square(&blurred);
-        println!("{pixels} pixels: {estimate:.4e} +- {error:.1e}, closed form {asked:.4e}");
-        assert!((estimate - asked).abs() < 4.5 * error, "{pixels} pixels: {estimate} for {asked}, error {error}");
+        let exact = square(&twice) / square(&blurred);
+        println!("{pixels} pixels: {estimate:.4e} +- {error:.1e}, closed form {exact:.4e}");
+        assert!((estimate - exact).abs() < 4.5 * error, "{pixels} pixels: {estimate} for {exact}, error {error}");
         // The image is changed by the blur of the whole kernel.
         let part = |(film, _): &(Film, Report)| {
             let pixels = film.pixels.iter().zip(&sharp).zip(&blurs);

@@ -64,8 +64,10 @@ fn a_lossless_body_in_an_even_sky_is_invisible_in_every_band() {
 fn every_branch_together_makes_each_pixel_of_a_furnace_1() {
     for index in INDICES {
         for (name, bodies) in bodies(index).into_iter().take(3) {
-            let (film, report) =
-                render_film(&outside_view(&bodies, 1), Transport::Deterministic { cutoff: 1e-9, most: u64::MAX });
+            let (film, report) = render_film(
+                &outside_view(&bodies, 1),
+                Transport::Deterministic { cutoff: 1e-9, max_sample_surfaces: u64::MAX },
+            );
             // Chains of total reflection inside the cube end at the last surface, and what they carry is counted.
             for (at, pixel) in film.pixels.iter().enumerate() {
                 for x in pixel.rgb {

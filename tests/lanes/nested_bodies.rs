@@ -4,7 +4,7 @@ use abbe::math::DVec3;
 
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, GROUND, SINGLE_PATH, SPLITTING, body, environment, render_film, view};
-use abbe::trace::{MOST_MEDIA, Transport};
+use abbe::trace::{MAX_MEDIA, Transport};
 
 /// Returns reflectance over transmittance of one interface at normal incidence.
 fn r_over_t(n1: f64, n2: f64) -> f64 {
@@ -50,7 +50,7 @@ fn radiance_through(bodies: &str) -> f64 {
     let lamp = body("lamp", "emissive = { radiance = 1 }", &[plane]);
     // Off the diagonals of the faces, and so narrow that its rays count as one.
     let text = view([0.31, 0.17, 5.0], [0.31, 0.17, 0.0], 1e-6, 1) + bodies + &lamp;
-    let (film, report) = render_film(&text, Transport::Deterministic { cutoff: 1e-12, most: u64::MAX });
+    let (film, report) = render_film(&text, Transport::Deterministic { cutoff: 1e-12, max_sample_surfaces: u64::MAX });
     assert_eq!(report.unmatched, 0);
     f64::from(film.pixels[0].rgb[1])
 }
@@ -91,7 +91,7 @@ fn m3_overlap_and_displacement_bend_light_the_same_way() {
     let solid = body("glass", SOLID, &["cube = { center = [0, 0, 0], size = 2 }"]);
     let pictures = [vessel() + &water(0.91, 1), solid + &water(0.9, 2)].map(|bodies| {
         let text = view([2.9, 0.4, 4.7], [0.1, 0.05, 0.0], 12.0, 40) + &bodies + &stripes;
-        render_film(&text, Transport::Deterministic { cutoff: 1e-6, most: u64::MAX }).0
+        render_film(&text, Transport::Deterministic { cutoff: 1e-6, max_sample_surfaces: u64::MAX }).0
     });
     let [a, b] = pictures;
     for (at, (a, b)) in a.pixels.iter().zip(&b.pixels).enumerate() {
@@ -253,11 +253,11 @@ fn bodies_may_be_nested_up_to_the_limit_and_more_are_reported() {
             let (film, report) = render_film(&text, EVERY_BRANCH);
             (f64::from(film.pixels[0].rgb[1]), report)
         };
-        let (shown, report) = seen(MOST_MEDIA as u32);
+        let (shown, report) = seen(MAX_MEDIA as u32);
         assert_eq!((report.unmatched, report.has_many_media), (0, false), "from {position:?}");
         let expected = (-0.02 * path).exp();
         assert!((shown - expected).abs() < 1e-6, "from {position:?}: {shown}, not {expected}");
-        let (_, report) = seen(MOST_MEDIA as u32 + 1);
+        let (_, report) = seen(MAX_MEDIA as u32 + 1);
         assert!(report.unmatched > 0 && report.has_many_media, "from {position:?}");
     }
 }

@@ -19,7 +19,7 @@ use crate::support::run::Folder;
 /// Reads damaged bytes. If they are still a valid file, looks at everything in it.
 fn inspect(folder: &Folder, bytes: &[u8]) -> Result<(), String> {
     folder.write("case.exr", bytes);
-    match ExrFile::read(&folder.path_of("case.exr")) {
+    match ExrFile::read(folder.path_of("case.exr")) {
         Ok(file) => {
             for layer in file.layers() {
                 layer.channels.iter().for_each(|channel| assert!(channel.statistics().finite <= 1 << 20));

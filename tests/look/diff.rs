@@ -67,7 +67,7 @@ fn diff(folder: &Folder, a: &Exr, b: &Exr, more: &[&str]) -> Answer {
 fn difference(a: &Exr, b: &Exr) -> Difference {
     let folder = Folder::new();
     diff(&folder, a, b, &[]);
-    let [a, b] = ["a.exr", "b.exr"].map(|name| ExrFile::read(&folder.path_of(name)).expect("an image"));
+    let [a, b] = ["a.exr", "b.exr"].map(|name| ExrFile::read(folder.path_of(name)).expect("an image"));
     compare([&a, &b], None, ["a.exr", "b.exr"]).expect("they can be compared")
 }
 
@@ -102,7 +102,7 @@ fn a_pixel_that_is_ten_standard_deviations_off_is_found() {
     // Ten times the deviation sqrt(1e-4 + 1e-4) of a difference, in green of pixel (7, 3).
     b.channel("G")[67] -= 10.0 * 2e-4_f32.sqrt();
     let noise = difference(&a, &b).noise.expect("both files say their variance");
-    assert!((noise.worst - 10.0).abs() < 1e-4 && noise.at == [67, 1] && noise.beyond == 1, "{noise:?}");
+    assert!((noise.worst - 10.0).abs() < 1e-4 && noise.worst_place == [67, 1] && noise.beyond == 1, "{noise:?}");
     // 540 values: 1 - 0.99^(1/540) is 1.8612e-5, whose two-sided quantile is 4.281.
     assert!((noise.threshold - 4.281).abs() < 2e-3, "{noise:?}");
     let lines = [
@@ -132,7 +132,7 @@ fn it_is_the_same_where_layers_are_parts_of_their_own() {
     let (colors, variances) = channels.into_iter().partition(|(name, _)| COLORS.contains(name));
     b.parts = vec![("beauty", colors), ("variance", variances)];
     let noise = difference(&a, &b).noise.expect("both files say their variance");
-    assert_eq!((noise.at, noise.beyond, noise.changed), ([5, 0], 1, 0));
+    assert_eq!((noise.worst_place, noise.beyond, noise.changed), ([5, 0], 1, 0));
 }
 
 #[test]

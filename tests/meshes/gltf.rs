@@ -261,7 +261,7 @@ fn broken_gltf_files_are_refused_with_the_reason() {
         [("", "its JSON is not valid glTF: EOF"), ("[1]", "it is glTF"), ("glTF", "it is not version 2")]
     {
         let (_folder, path) = file("a.glb", text);
-        let message = read_mesh(&path, false).err().expect("no glTF");
+        let message = read_mesh(&path, false).expect_err("no glTF");
         assert!(message.starts_with(start) || text == "[1]", "{message}");
     }
     let (_folder, path) = file("a.gltf", document(r#""uri":"absent.bin","#, 1, ""));

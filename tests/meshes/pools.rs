@@ -104,7 +104,7 @@ fn the_triangle_of_a_lamp_is_occluded_by_others_of_the_lamp_and_by_what_stands_b
             let own_hit = shape.intersect(&ray, f64::INFINITY);
             for part in 0..12 {
                 let Some(intersection) = shape.intersect_triangle(&ray, part) else { continue };
-                let ends = RayEnds { left: None, light: Some(lamp as u32), part: Some(part) };
+                let ends = RayEnds { start: None, light: Some(lamp as u32), part: Some(part) };
                 let whole = scene.is_occluded(&ray, intersection.t, Some(lamp as u32), &Cell::new(None));
                 let expected = whole || own_hit != Some(intersection);
                 assert_eq!(

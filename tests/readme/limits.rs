@@ -50,23 +50,23 @@ const NUMBERS: [(&str, SceneWriter); 35] = [
 
 /// The beginning of each row of the second table, the file in which the code defines the number, and its name there.
 const COUNTS: [(&str, &str, &str); 17] = [
-    ("pixels of the film", "src/film/decoder_guard.rs", "MOST_PIXELS"),
-    ("bytes of the layers", "src/rendering/options.rs", "MOST_OF_LAYERS"),
+    ("pixels of the film", "src/film/decoder_guard.rs", "MAX_PIXELS"),
+    ("bytes of the layers", "src/rendering/options.rs", "MAX_LAYER_BYTES"),
     ("bands of a spectral image", "src/spectrum/wavelength_bands.rs", "MAX_COUNT"),
-    ("samples of a pixel", "src/plan/stopping.rs", "MOST"),
+    ("samples of a pixel", "src/plan/stopping.rs", "MAX_SAMPLES"),
     ("lanes of a ray", "src/spectrum/table.rs", "MAX_LANES"),
     ("hero wavelengths", "src/spectrum/draw.rs", "MAX_HEROES"),
     ("layers of a coating", "src/material/stack.rs", "MAX_LAYERS"),
-    ("clear materials", "src/trace/media.rs", "MOST_MEDIA"),
+    ("clear materials", "src/trace/media.rs", "MAX_MEDIA"),
     ("materials that one", "src/scene/compile/material_parts.rs", "MAX_PARTS"),
     ("materials within", "src/scene/compile/material_parts.rs", "MAX_DEPTH"),
-    ("pixels of an image", "src/film/decoder_guard.rs", "MOST_TEXELS"),
+    ("pixels of an image", "src/film/decoder_guard.rs", "MAX_TEXELS"),
     ("bytes of a scene", "src/scene/text/include.rs", "MAX_BYTES"),
     ("files that include", "src/scene/text/include.rs", "MAX_DEPTH"),
-    ("bytes of an OpenEXR file", "src/film/exr_file.rs", "MOST_BYTES"),
+    ("bytes of an OpenEXR file", "src/film/exr_file.rs", "MAX_BYTES"),
     ("corners of a face", "src/shape/ear_clipping.rs", "MAX_CORNERS"),
     ("triangles of a glTF file", "src/shape/gltf.rs", "MAX_TRIANGLES"),
-    ("threads", "src/rendering/options.rs", "MOST_THREADS"),
+    ("threads", "src/rendering/options.rs", "MAX_THREADS"),
 ];
 
 /// Rows of the tables whose scenes would need a file.

@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 use abbe::math::{Bounds, DMat3, DVec3, Frame, Ray, Transform};
-use abbe::shape::{Bvh, Cube, Disc, Ellipsoid, Mesh, Quad, Shape, Triangle, Vectors, Vertices, Visitor, read_mesh};
+use abbe::shape::{Bvh, Cube, Disc, Ellipsoid, Mesh, Quad, Shape, Triangle, Vertices, Visitor, read_mesh};
 
 use super::OFFSET;
 use crate::meshes::files::file;
@@ -20,7 +20,7 @@ struct Reached<'a> {
 }
 
 impl Visitor for Reached<'_> {
-    fn visit(&mut self, _: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64> {
+    fn visit(&mut self, first: usize, groups: usize, t_max: f64) -> Option<f64> {
         self.reached |= self.bvh.items()[first..first + groups].contains(&self.item);
         Some(t_max)
     }

@@ -13,7 +13,7 @@ use abbe::{Diagnostic, Error, Image, Options};
 use super::larger::larger;
 
 /// Follows every branch down to a weight that no pixel can resolve.
-pub const EVERY_BRANCH: Transport = Transport::Deterministic { cutoff: 1e-20, most: u64::MAX };
+pub const EVERY_BRANCH: Transport = Transport::Deterministic { cutoff: 1e-20, max_sample_surfaces: u64::MAX };
 /// The plan's choice where light is sampled randomly.
 pub const SPLITTING: Transport = Transport::Random { split: 0.05, roulette: 0.05 };
 /// The path tracer: one branch at every surface and one light at every vertex.

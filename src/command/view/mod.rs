@@ -71,7 +71,7 @@ pub fn run(query: &Query) -> Result<()> {
     query.png.as_deref().map_or(Ok(()), |png| check_not_input(&query.file, "image", png))?;
     let file = ExrFile::read(&query.file)?;
     let file_name = query.file.display().to_string();
-    let matte_name = query.layer.as_deref().and_then(|layer| Mattes::within(&file, layer));
+    let matte_name = query.layer.as_deref().and_then(|layer| Mattes::name_of_layer(&file, layer));
     let name = matte_name.or(query.layer.as_deref());
     let picture = match file.layer(name, &file_name) {
         Ok(layer) => of_layer(query, &file, &one_band(query, &file, layer, &file_name)?)?,

@@ -65,16 +65,16 @@ fn blocks(picture: &Picture) -> String {
     let rows: Vec<&[[u8; 3]]> = bytes.chunks_exact(picture.width()).collect();
     let mut text = String::new();
     for pair in rows.chunks(2) {
-        let mut before = None;
+        let mut last_halves = None;
         for x in 0..picture.width() {
             let halves = (pair[0][x], pair.get(1).map(|row| row[x]));
-            if before != Some(halves) {
+            if last_halves != Some(halves) {
                 let ([r, g, b], lower) = halves;
                 let _ = write!(text, "\x1b[38;2;{r};{g};{b}");
                 let _ = lower.map_or(Ok(()), |[r, g, b]| write!(text, ";48;2;{r};{g};{b}"));
                 text.push('m');
             }
-            before = Some(halves);
+            last_halves = Some(halves);
             text.push('▀');
         }
         text.push_str("\x1b[0m\n");
@@ -101,12 +101,12 @@ fn kitty(png: &[u8], columns: usize) -> String {
 fn sixels(picture: &Picture) -> String {
     const PATTERN: [[usize; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
     let width = picture.width();
-    let color = |at: usize, pixel: &[u8; 3]| {
-        let threshold = (2 * PATTERN[at / width % 4][at % width % 4] + 1) * 255 / 32;
+    let color = |index: usize, pixel: &[u8; 3]| {
+        let threshold = (2 * PATTERN[index / width % 4][index % width % 4] + 1) * 255 / 32;
         let level = |byte: u8| (usize::from(byte) * (LEVELS - 1) + threshold) / 255;
         pixel.iter().fold(0, |color, byte| LEVELS * color + level(*byte))
     };
-    let colors: Vec<usize> = picture.bytes().iter().enumerate().map(|(at, pixel)| color(at, pixel)).collect();
+    let colors: Vec<usize> = picture.bytes().iter().enumerate().map(|(index, pixel)| color(index, pixel)).collect();
     let mut text = format!("\x1bP0;1q\"1;1;{width};{}", picture.height());
     for color in 0..LEVELS.pow(3) {
         let [r, g, b] = [color / (LEVELS * LEVELS), color / LEVELS % LEVELS, color % LEVELS].map(|level| level * 20);

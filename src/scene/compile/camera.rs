@@ -37,19 +37,20 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
         let kind = named.map_or(Some(ProjectionKind::Perspective), |value| value.word(&PROJECTIONS));
         let projection = projection(context, camera, kind);
         let shift = camera.or("shift", [0.0; 2], shift);
-        let far = position.zip(target.as_ref()).map(|(position, target)| (target.it - position).length());
+        let far = position.zip(target.as_ref()).map(|(position, target)| (target.value - position).length());
         let lens = camera.maybe("lens", |value| lens(value, far));
         let near = camera.or("near", 0.0, |value| {
             value.number_within(0.0..=MAX_LENGTH, &format!("near is a distance from 0 to {MAX_LENGTH:e}"), None)
         });
         let sensor = camera.maybe("sensor_width", |value| sensor_width(value, kind?));
         let (position, target, up) = (position?, target?, up?);
-        if (target.it - position).try_normalize().is_none() {
+        if (target.value - position).try_normalize().is_none() {
             return target.place.refuse("the camera looks at its own position");
         }
         let (projection, shift, lens, near, sensor, film) = (projection?, shift?, lens?, near?, sensor?, film?);
         let size = [film.width, film.height];
-        let (view, parallel) = Camera::new(position, target.it, up.map_or(DVec3::Y, |up| up.it), projection, size);
+        let (view, parallel) =
+            Camera::new(position, target.value, up.map_or(DVec3::Y, |up| up.value), projection, size);
         if parallel {
             let place = up.map_or(target.place, |up| up.place);
             context.warn_at(place, "`up` is parallel to the viewing direction; another direction is used");

@@ -33,8 +33,8 @@ pub(super) fn curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Q
     check_finite(text.scale)?;
     text.luminance.map_or(Some(()), check_finite)?;
     let kind = kind(context, text, quantity)?;
-    let curve = Curve { kind, scale: text.scale.it, luminance: text.luminance.map(|luminance| luminance.it) };
-    if let Some(Spanned { place, it: luminance }) = text.luminance {
+    let curve = Curve { kind, scale: text.scale.value, luminance: text.luminance.map(|luminance| luminance.value) };
+    if let Some(Spanned { place, value: luminance }) = text.luminance {
         place.reported(factor("a luminance", luminance))?;
         if luminance > 0.0 && !Emission::new(&curve, ColorSpace::default()).xyz()[1].is_normal() {
             return place.refuse("a light without power has no luminance");
@@ -110,7 +110,7 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
     let place = text.place;
     match &text.kind {
         KindText::Number(number) => {
-            place.reported(check_value(quantity, number * text.scale.it, ""))?;
+            place.reported(check_value(quantity, number * text.scale.value, ""))?;
             Some(CurveKind::Number(*number))
         }
         KindText::Rgb(rgb) => {
@@ -118,7 +118,7 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
             check_values(text, quantity, rgb.iter().copied())?;
             Some(CurveKind::Rgb(*rgb))
         }
-        KindText::Samples(samples) => match check_samples(samples, quantity, text.scale.it) {
+        KindText::Samples(samples) => match check_samples(samples, quantity, text.scale.value) {
             Ok(()) => Some(CurveKind::Samples(samples.clone())),
             Err(refusal) => {
                 let help = if is_transposed(samples) { Some(PAIRS_HELP.into()) } else { refusal.help };
@@ -131,12 +131,12 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
         KindText::Abbe { nd, vd } => abbe(text, *nd, *vd),
         KindText::Illuminant(name) => {
             let Some(light) = CurveKind::illuminant(name) else { return unknown_illuminant(name).report(place) };
-            text.scale.place.reported(factor("a scale", text.scale.it))?;
+            text.scale.place.reported(factor("a scale", text.scale.value))?;
             Some(light)
         }
         KindText::Blackbody(kelvin) => {
             place.reported(check_blackbody(*kelvin))?;
-            text.scale.place.reported(factor("a scale", text.scale.it))?;
+            text.scale.place.reported(factor("a scale", text.scale.value))?;
             Some(CurveKind::Blackbody(*kelvin))
         }
         KindText::Lines(lines) => {
@@ -152,7 +152,7 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
 /// Refuses a share that is a color from 0 to 255, as on screens.
 fn refuse_screen_color(text: &CurveText, quantity: Quantity, rgb: [f64; 3]) -> Option<()> {
     let is_share = matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share);
-    let first = rgb.iter().position(|x| *x > 1.0).filter(|_| is_share && text.scale.it == 1.0);
+    let first = rgb.iter().position(|x| *x > 1.0).filter(|_| is_share && text.scale.value == 1.0);
     // Numbers up to 100 may be meant in percent.
     let Some((first, color)) = first.filter(|_| rgb.iter().any(|x| *x > 100.0)).zip(bytes_to_linear(rgb)) else {
         return Some(());
@@ -164,7 +164,7 @@ fn refuse_screen_color(text: &CurveText, quantity: Quantity, rgb: [f64; 3]) -> O
 
 /// Refuses a list that contains an impossible value.
 fn check_values(text: &CurveText, quantity: Quantity, values: impl Iterator<Item = f64>) -> Option<()> {
-    let scale = text.scale.it;
+    let scale = text.scale.value;
     values.enumerate().try_for_each(|(number, value)| {
         text.place.entry(number).reported(check_value(quantity, value * scale, &with_scale(scale)))
     })
@@ -247,24 +247,24 @@ fn read_sample_file<'d>(
 ) -> Option<CurveKind> {
     let place = text.place;
     // Without a column, the second one is read.
-    let column = text.column.unwrap_or(Spanned { place, it: 2 });
-    if column.it < 2 {
+    let column = text.column.unwrap_or(Spanned { place, value: 2 });
+    if column.value < 2 {
         return column.place.refuse("the values are in column 2 or later: column 1 holds the wavelengths");
     }
     if let Some(help) = image_hint(file) {
         return place.advise(format!("{file} is an image, not a table of samples"), help);
     }
     let table = place.reported(utf8(place.file(file, &TABLE_FILE)?, file, "save the table as CSV in UTF-8"))?;
-    let rows = match read_columns(&table, column.it) {
+    let rows = match read_columns(&table, column.value) {
         Ok(rows) => rows,
         Err(fault) => {
-            let place = if fault.is_column && column.it != 2 { column.place } else { place };
+            let place = if fault.is_column && column.value != 2 { column.place } else { place };
             return place.report(format!("{file}{}", fault.message), fault.help);
         }
     };
     context.record_file(place.path(file), table.as_bytes());
     let samples: Vec<[f64; 2]> = rows.iter().map(|row| row.pair).collect();
-    match check_samples(&samples, quantity, text.scale.it) {
+    match check_samples(&samples, quantity, text.scale.value) {
         Ok(()) => Some(CurveKind::Samples(samples)),
         Err(CurveError { message, help, entry: Some(entry), .. }) => {
             place.report(format!("{file}, line {}: {message}", rows[entry].line), help)
@@ -276,7 +276,7 @@ fn read_sample_file<'d>(
 /// Returns a Cauchy curve, n = A + B / wavelength^2.
 fn cauchy(text: &CurveText, terms: [f64; 2]) -> Option<CurveKind> {
     let (kind, place) = (CurveKind::Cauchy(terms), text.place);
-    match check_index(text.scale.it, &kind) {
+    match check_index(text.scale.value, &kind) {
         Ok(()) => Some(kind),
         Err(refusal) if (500.0..100_000.0).contains(&terms[1]) => {
             let help = format!("B is in um^2: if this is in nm^2, write {}", six_digits(terms[1] * 1e-6));
@@ -288,41 +288,41 @@ fn cauchy(text: &CurveText, terms: [f64; 2]) -> Option<CurveKind> {
 
 /// Returns the two-term Cauchy curve through n_d with the Abbe number V_d = (n_d - 1) / (n_F - n_C).
 fn abbe(text: &CurveText, nd: Spanned<f64>, vd: Spanned<f64>) -> Option<CurveKind> {
-    if vd.it <= 0.0 {
+    if vd.value <= 0.0 {
         return vd.place.refuse("an Abbe number is above 0");
     }
-    if nd.it <= 1.0 {
-        return nd.place.advise(format!("a refractive index is above 1, not {}", six_digits(nd.it)), ABBE);
+    if nd.value <= 1.0 {
+        return nd.place.advise(format!("a refractive index is above 1, not {}", six_digits(nd.value)), ABBE);
     }
-    let kind = CurveKind::Cauchy(cauchy_from_abbe(nd.it, vd.it));
-    text.place.reported(check_index(text.scale.it, &kind).map_err(|refusal| refusal.help(ABBE)))?;
+    let kind = CurveKind::Cauchy(cauchy_from_abbe(nd.value, vd.value));
+    text.place.reported(check_index(text.scale.value, &kind).map_err(|refusal| refusal.help(ABBE)))?;
     Some(kind)
 }
 
 fn sellmeier(text: &CurveText, b: &Spanned<Vec<f64>>, c: &Spanned<Vec<f64>>) -> Option<CurveKind> {
     let place = text.place;
-    if b.it.len() != c.it.len() || b.it.is_empty() {
-        let (b, c) = (b.it.len(), c.it.len());
+    if b.value.len() != c.value.len() || b.value.is_empty() {
+        let (b, c) = (b.value.len(), c.value.len());
         return place.refuse(format!(
             "a Sellmeier curve needs equal numbers of b and c, at least one of each, not {b} and {c}"
         ));
     }
-    if let Some(pole) = c.it.iter().position(|&c| c > 0.0 && (0.36..=0.83).contains(&c.sqrt())) {
-        let nm = c.it[pole].sqrt() * 1e3;
+    if let Some(pole) = c.value.iter().position(|&c| c > 0.0 && (0.36..=0.83).contains(&c.sqrt())) {
+        let nm = c.value[pole].sqrt() * 1e3;
         let message = format!("this Sellmeier curve has a pole at {nm:.0} nm, in visible light");
         return c.place.entry(pole).advise(message, SELLMEIER);
     }
     for nm in 360..=830 {
-        let squared = sellmeier_squared(&b.it, &c.it, f64::from(nm) * 1e-3);
+        let squared = sellmeier_squared(&b.value, &c.value, f64::from(nm) * 1e-3);
         if squared.is_nan() || squared <= 0.0 {
             return place
                 .advise(format!("this Sellmeier curve gives n^2 = {} at {nm} nm", six_digits(squared)), SELLMEIER);
         }
     }
-    let kind = CurveKind::Sellmeier { b: b.it.clone(), c: c.it.clone() };
-    match check_index(text.scale.it, &kind) {
+    let kind = CurveKind::Sellmeier { b: b.value.clone(), c: c.value.clone() };
+    match check_index(text.scale.value, &kind) {
         Ok(()) => Some(kind),
-        Err(refusal) if c.it.iter().all(|&c| c > 1e3) => {
+        Err(refusal) if c.value.iter().all(|&c| c > 1e3) => {
             refusal.help("c is in um^2: if this is in nm^2, divide it by 1e6").report(c.place)
         }
         Err(refusal) => refusal.help(SELLMEIER).report(place),

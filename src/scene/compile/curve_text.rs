@@ -95,12 +95,12 @@ pub(super) const PAIRS_HELP: &str = "write a pair for each wavelength, as in [[4
 
 /// Reads a number that can be part of a spectrum.
 fn finite_number(value: Value) -> Option<f64> {
-    let it = value.number()?;
-    check_finite(Spanned { place: value, it }).map(|()| it)
+    let number = value.number()?;
+    check_finite(Spanned { place: value, value: number }).map(|()| number)
 }
 
-pub(super) fn check_finite(Spanned { place, it }: Spanned<f64>) -> Option<()> {
-    if it.is_finite() { Some(()) } else { place.refuse(not_finite(it)) }
+pub(super) fn check_finite(Spanned { place, value: number }: Spanned<f64>) -> Option<()> {
+    if number.is_finite() { Some(()) } else { place.refuse(not_finite(number)) }
 }
 
 pub(super) fn not_finite(x: f64) -> String {
@@ -184,7 +184,7 @@ impl<'d> CurveText<'d> {
 
     /// Returns a spectrum that is not written as a table.
     fn plain(value: Value<'d>, kind: KindText<'d>) -> Self {
-        let (scale, repeat) = (Spanned { place: value, it: 1.0 }, Spanned { place: value, it: [1.0; 2] });
+        let (scale, repeat) = (Spanned { place: value, value: 1.0 }, Spanned { place: value, value: [1.0; 2] });
         let (column, encoding, channel, luminance) = (None, None, None, None);
         let (wrap, filter) = (Wrap::default(), TexelFilter::default());
         Self { value, place: value, kind, column, encoding, channel, wrap, filter, repeat, scale, luminance }
@@ -199,8 +199,8 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, quantity: Quantity)
     let channel = table.maybe("channel", |value| value.word(&CHANNELS));
     let wrap = table.or("wrap", Wrap::default(), |value| value.word(&WRAPS));
     let filter = table.or("filter", TexelFilter::default(), |value| value.word(&FILTERS));
-    let repeat = table.or("repeat", Spanned { place: value, it: [1.0; 2] }, spanned(one_or_two));
-    let scale = table.or("scale", Spanned { place: value, it: 1.0 }, spanned(Value::number));
+    let repeat = table.or("repeat", Spanned { place: value, value: [1.0; 2] }, spanned(one_or_two));
+    let scale = table.or("scale", Spanned { place: value, value: 1.0 }, spanned(Value::number));
     let luminance = table.maybe("luminance", spanned(Value::number));
     let mut given = kinds.into_iter().flatten();
     let Some((place, kind)) = given.next() else {
@@ -235,7 +235,7 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, quantity: Quantity)
 
 /// Reads how many copies of an image or a pattern there are in a unit of u and of v: one number or two.
 pub(super) fn repeat(value: Value) -> Option<[f64; 2]> {
-    check_repeat(Spanned { place: value, it: one_or_two(value)? })
+    check_repeat(Spanned { place: value, value: one_or_two(value)? })
 }
 
 fn one_or_two(value: Value) -> Option<[f64; 2]> {
@@ -243,7 +243,7 @@ fn one_or_two(value: Value) -> Option<[f64; 2]> {
 }
 
 /// Checks that numbers of copies in a unit are neither too large nor too small.
-pub(super) fn check_repeat(Spanned { place: value, it: repeat }: Spanned<[f64; 2]>) -> Option<[f64; 2]> {
+pub(super) fn check_repeat(Spanned { place: value, value: repeat }: Spanned<[f64; 2]>) -> Option<[f64; 2]> {
     match repeat.iter().find(|x| !(1.0 / MAX_REPEAT..=MAX_REPEAT).contains(*x)) {
         Some(wrong) => value.refuse(format!(
             "`repeat` is the number of copies in a unit, {:e} to {MAX_REPEAT:e}, not {wrong}",

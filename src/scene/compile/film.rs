@@ -36,21 +36,21 @@ pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
         let crop = film.maybe("crop", spanned(crop));
         let format = format(film);
         let (width, height) = (width?, height?);
-        let (pixels, most) = (u64::from(width) * u64::from(height.it), FilmSettings::MAX_PIXELS);
+        let (pixels, most) = (u64::from(width) * u64::from(height.value), FilmSettings::MAX_PIXELS);
         if pixels > most {
-            let message = format!("{width} x {} is {pixels} pixels; at most {most} fit", height.it);
-            let [across, down] = [width, height.it].map(u64::from);
+            let message = format!("{width} x {} is {pixels} pixels; at most {most} fit", height.value);
+            let [across, down] = [width, height.value].map(u64::from);
             let (wide, high) = ((most * across / down).isqrt(), (most * down / across).isqrt());
             return height.place.advise(message, format!("at this aspect ratio, {wide} x {high} pixels fit"));
         }
-        let (filter, color_space, height, overscan, crop) = (filter?, color_space?, height.it, overscan?, crop?);
+        let (filter, color_space, height, overscan, crop) = (filter?, color_space?, height.value, overscan?, crop?);
         let film = FilmSettings {
             width,
             height,
             filter,
             color_space,
-            overscan: overscan.map(|overscan| overscan.it).unwrap_or_default(),
-            crop: crop.map(|crop| crop.it),
+            overscan: overscan.map(|overscan| overscan.value).unwrap_or_default(),
+            crop: crop.map(|crop| crop.value),
         };
         if let Some((overscan, message)) = overscan.zip(film.objection_to_overscan()) {
             return overscan.place.advise(message, "overscan is a number of pixels, or [left, top, right, bottom]");

@@ -30,7 +30,7 @@ pub(super) fn format(film: &mut Fields) -> Option<Format> {
     let white_luminance = white_luminance(film);
     let ([owner, comments], frames_per_second) = metadata?;
     let (layers, first, compressed, multipart, stokes) = (layers?, first?, compression?, multipart?, stokes?);
-    let (place, compression) = compressed.map_or((None, Compression::default()), |at| (Some(at.place), at.it));
+    let (place, compression) = compressed.map_or((None, Compression::default()), |at| (Some(at.place), at.value));
     let precision = precision?.unwrap_or(match compression.is_of_16_bits() {
         true => Precision::Half,
         false => Precision::default(),
@@ -66,7 +66,7 @@ fn white_luminance(film: &mut Fields) -> Option<Option<f64>> {
         spanned(|value: Value| value.number_within(above_0_to(MAX_WHITE_LUMINANCE), &rule, Some(help))),
     );
     match (is_absolute?, white?) {
-        (true, white) => Some(Some(white.map_or(1.0, |white| white.it))),
+        (true, white) => Some(Some(white.map_or(1.0, |white| white.value))),
         (false, None) => Some(None),
         (false, Some(Spanned { place, .. })) => place.refuse_key(
             "a luminance of white needs radiometry = \"absolute\"",

@@ -29,8 +29,8 @@ pub(super) fn surface_curve<'d>(context: &mut Context, text: &CurveText<'d>, qua
 
 fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, quantity: Quantity) -> Option<Curve> {
     let (factor, placement) = (factor_on_image(text), text.placement());
-    let at_file = Spanned { place: text.place, it: file };
-    let encoding = text.encoding.map(|encoding| encoding.it);
+    let at_file = Spanned { place: text.place, value: file };
+    let encoding = text.encoding.map(|encoding| encoding.value);
     let meaning = match quantity {
         // The grays of a thickness are numbers that no screen has encoded.
         Quantity::Thickness => Meaning::Thicknesses(encoding.unwrap_or(Encoding::Linear)),
@@ -38,7 +38,7 @@ fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, q
         _ => Meaning::Light(encoding),
     };
     let image = match (text.channel, text.encoding) {
-        (Some(Channel::Alpha), Some(Spanned { place, it: Encoding::Srgb })) => {
+        (Some(Channel::Alpha), Some(Spanned { place, value: Encoding::Srgb })) => {
             place.advise("alpha is a share, which is never encoded as sRGB", "leave `encoding` out")
         }
         _ => image(context, &at_file, meaning, text.channel),
@@ -78,7 +78,7 @@ pub(super) fn factor_on_image(text: &CurveText) -> Option<f64> {
     if let Some(luminance) = text.luminance {
         return luminance.place.advise("an image has no single luminance", "use `scale`");
     }
-    match text.scale.it {
+    match text.scale.value {
         scale if is_factor(scale) => Some(scale),
         scale => {
             text.scale.place.refuse(format!("the scale of an image lies between 0 and {MAX_EMISSION:e}, not {scale}"))
@@ -97,7 +97,7 @@ fn checker<'d>(
     }
     let repeat = check_repeat(text.repeat);
     let [first, second] = cells.each_ref().map(|cell| {
-        let scale = Spanned { it: cell.scale.it * text.scale.it, ..cell.scale };
+        let scale = Spanned { value: cell.scale.value * text.scale.value, ..cell.scale };
         square(context, &CurveText { scale, ..cell.clone() }, quantity)
     });
     let (repeat, mut cells, mut scale) = (repeat?, [first?, second?], 1.0);
@@ -130,7 +130,7 @@ pub(super) fn read_file(
     kind: &FileKind,
     read: impl FnOnce(&Path, &[u8]) -> Result<ImageFile, Fault>,
 ) -> Option<Arc<Image>> {
-    let Spanned { place, it: file } = *file;
+    let Spanned { place, value: file } = *file;
     let bytes = place.file(file, kind)?;
     let ImageFile { image, warnings } = place.reported(read(Path::new(file), &bytes))?;
     context.record_file(place.path(file), &bytes);
@@ -145,7 +145,7 @@ pub(super) fn image(
     meaning: Meaning,
     channel: Option<Channel>,
 ) -> Option<Arc<Image>> {
-    let key = (file.place.path(file.it), meaning, channel);
+    let key = (file.place.path(file.value), meaning, channel);
     if let Some(image) = context.images.get(&key) {
         return Some(image.clone());
     }

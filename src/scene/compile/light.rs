@@ -67,7 +67,7 @@ pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment
             }
         }?;
         let group = group.unwrap_or(light.kind_name()).to_owned();
-        Some(LightEntry { light, group, is_visible: visible.is_none_or(|visible| visible.it) })
+        Some(LightEntry { light, group, is_visible: visible.is_none_or(|visible| visible.value) })
     })
 }
 
@@ -174,8 +174,8 @@ fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve
         refuse_entry_keys(light, "spot", &POINT_LIGHT_KEYS);
         let position = position?;
         let toward = match (toward?, target?) {
-            (Some(toward), None) => toward.it,
-            (None, Some(Spanned { place, it: target })) => match (target - position).try_normalize() {
+            (Some(toward), None) => toward.value,
+            (None, Some(Spanned { place, value: target })) => match (target - position).try_normalize() {
                 Some(toward) => toward,
                 None => return place.advise("the spot looks at its own position", "choose another point"),
             },
@@ -208,7 +208,7 @@ fn environment_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Envi
         refuse_infinite_light_keys(light, "environment");
         let (radiance, polarization) = (radiance?, polarization?);
         let KindText::Image(file) = radiance.kind else {
-            if let Some(turn) = turn?.filter(|turn| !turn.it.is_empty()) {
+            if let Some(turn) = turn?.filter(|turn| !turn.value.is_empty()) {
                 return turn.place.advise("a uniform environment looks the same after any rotation", "leave it out");
             }
             let radiance = curve(context, &radiance, Quantity::Emission)?;
@@ -221,8 +221,8 @@ fn environment_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Envi
             return radiance.value.refuse(message);
         }
         let factor = factor_on_image(&radiance);
-        let turn = turn.and_then(|turn| turn.map_or(Some(Transform::IDENTITY), |turn| rotation(&turn.it)));
-        let panorama = panorama(context, &Spanned { place: radiance.place, it: file });
+        let turn = turn.and_then(|turn| turn.map_or(Some(Transform::IDENTITY), |turn| rotation(&turn.value)));
+        let panorama = panorama(context, &Spanned { place: radiance.place, value: file });
         let (factor, turn, panorama) =
             (radiometry::scale_to_film(context, &radiance, factor?.into())?, turn?, panorama?);
         let rotation = DMat3::from_cols(turn.vector(DVec3::X), turn.vector(DVec3::Y), turn.vector(DVec3::Z));
@@ -245,7 +245,7 @@ fn sky_polarization(value: Value) -> Option<SkyPolarization> {
 
 /// Returns the map of a list of steps that must all be rotations.
 fn rotation(steps: &[Spanned<Step>]) -> Option<Transform> {
-    match steps.iter().find(|step| !matches!(step.it, Step::Rotate(_))) {
+    match steps.iter().find(|step| !matches!(step.value, Step::Rotate(_))) {
         Some(step) => {
             let message = "an environment has no position and no size: it can only be rotated";
             step.place.advise(message, "write { rotate = { axis = [0, 1, 0], degrees = 90 } }")
@@ -259,7 +259,7 @@ fn panorama(context: &mut Context, file: &Spanned<&str>) -> Option<Panorama> {
     let (width, height) = (image.width(), image.height());
     if width != 2 * height {
         let message = "an image of all directions is twice as wide as high";
-        context.warn_at(file.place, format!("{} is {width} x {height}; {message}", file.it));
+        context.warn_at(file.place, format!("{} is {width} x {height}; {message}", file.value));
     }
     Some(Panorama::new(image, context.few_bounces))
 }

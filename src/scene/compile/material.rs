@@ -228,8 +228,8 @@ fn resolved<'d>(
     raw_draft: MaterialDraft<'d, SpectrumDraft<'d>>,
 ) -> Option<MaterialDraft<'d, Curve>> {
     let mut is_valid = true;
-    let mut curve = |quantity, asked: &SpectrumDraft<'d>| {
-        let curve = match *asked {
+    let mut curve = |quantity, draft: &SpectrumDraft<'d>| {
+        let curve = match *draft {
             SpectrumDraft::Given(value) => {
                 CurveText::read(value, quantity).and_then(|text| surface_curve(context, &text, quantity))
             }

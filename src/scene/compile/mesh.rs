@@ -49,8 +49,8 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         let written = |mesh: &Arc<Mesh>, file| ShapeText { shape: Shape::Mesh(mesh.clone()), file };
         let mut data = match (&file, &inline) {
             (Some(file), InlineMesh { points: None, faces: None, normals: None, uv: None }) => {
-                if let Some(mesh) = context.meshes.get(&(file.place.path(file.it), smooth)) {
-                    return Some(written(mesh, Some(file.it)));
+                if let Some(mesh) = context.meshes.get(&(file.place.path(file.value), smooth)) {
+                    return Some(written(mesh, Some(file.value)));
                 }
                 read_file(context, name, file, smooth)?
             }
@@ -62,8 +62,8 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
             data.attributes.normals.clear();
         }
         let mesh = build_mesh(context, name, value, data, smooth)?;
-        let written = written(&mesh, file.map(|file| file.it));
-        if let Some(Spanned { place, it: file }) = file {
+        let written = written(&mesh, file.map(|file| file.value));
+        if let Some(Spanned { place, value: file }) = file {
             context.meshes.insert((place.path(file), smooth), mesh);
         }
         Some(written)
@@ -147,9 +147,9 @@ fn build_mesh(context: &mut Context, name: &str, value: Value, data: MeshData, s
 impl InlineMesh<'_> {
     fn data(self) -> Option<MeshData> {
         let (points, faces) = (self.points?, self.faces?);
-        let count = points.it.len();
+        let count = points.value.len();
         let mut is_valid = true;
-        for (number, face) in faces.it.iter().enumerate() {
+        for (number, face) in faces.value.iter().enumerate() {
             if let Some(corner) = face.iter().position(|&corner| corner as usize >= count) {
                 let message = format!("there is no point {}: the {count} points are numbered from 0", face[corner]);
                 is_valid = false;
@@ -166,20 +166,20 @@ impl InlineMesh<'_> {
         };
         let mut attributes = Attributes::default();
         if let Some(normals) = self.normals {
-            fits(normals.place, "normals", normals.it.len())?;
+            fits(normals.place, "normals", normals.value.len())?;
             let single = |normal: DVec3| normal.normalize().to_array().map(|x| x as f32);
-            attributes.normals = normals.it.into_iter().map(single).collect();
+            attributes.normals = normals.value.into_iter().map(single).collect();
         }
         if let Some(uv) = self.uv {
-            fits(uv.place, "entries of `uv`", uv.it.len())?;
-            attributes.coordinates = uv.it.into_iter().map(|pair| pair.map(|x| x as f32)).collect();
+            fits(uv.place, "entries of `uv`", uv.value.len())?;
+            attributes.coordinates = uv.value.into_iter().map(|pair| pair.map(|x| x as f32)).collect();
         }
         if !is_valid {
             return None;
         }
-        let vertices = Vertices::Double(points.it);
+        let vertices = Vertices::Double(points.value);
         let mut cut = Faces::default();
-        faces.it.iter().for_each(|face| cut.push(face));
+        faces.value.iter().for_each(|face| cut.push(face));
         match cut.triangles(&vertices) {
             Ok(faces) => Some(MeshData { vertices, faces, attributes }),
             Err(message) => faces.place.refuse(message),
@@ -188,7 +188,7 @@ impl InlineMesh<'_> {
 }
 
 fn read_file(context: &mut Context, name: &str, file: &Spanned<&str>, smooth: bool) -> Option<MeshData> {
-    let Spanned { place, it: file } = *file;
+    let Spanned { place, value: file } = *file;
     let path = place.path(file);
     let mesh = match read_mesh(&path, smooth) {
         Ok(mesh) => mesh,

@@ -52,7 +52,7 @@ fn normal_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<
         let file = file?;
         let image = image(context, &file, Meaning::Directions, None)?;
         if image.mean()[2] <= 0.0 {
-            let message = format!("{} is not a normal map: its mean normal points into the surface", file.it);
+            let message = format!("{} is not a normal map: its mean normal points into the surface", file.value);
             let help = "blue points out of the surface and is 128 of 255 or more; for heights use `bump_map`";
             return file.place.advise(message, help);
         }

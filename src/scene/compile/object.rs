@@ -69,7 +69,7 @@ pub(super) fn object<'d>(
         };
         let map = object.or(
             "transform",
-            Spanned { place: entry, it: Transform::IDENTITY },
+            Spanned { place: entry, value: Transform::IDENTITY },
             spanned(|value| compose_steps(&steps(value)?, Transform::IDENTITY)),
         );
         let instances = object.get("instances");
@@ -84,18 +84,18 @@ pub(super) fn object<'d>(
             let (read, kind) = SHAPE.of(value)?;
             read(context, &name, kind)
         }));
-        let instances = instances.map_or(Some(None), |value| instance_maps(value, map?.it).map(Some));
+        let instances = instances.map_or(Some(None), |value| instance_maps(value, map?.value).map(Some));
         let (shape, map, named, instances) = (shape?, map?, named?, instances?);
         let (group, visibility, relief) = (group?, visibility?, relief?);
-        let written = &shape.it.shape;
-        if let (Some(_), Shape::Mesh(mesh)) = (named.it.medium(), written) {
+        let written = &shape.value.shape;
+        if let (Some(_), Shape::Mesh(mesh)) = (named.value.medium(), written) {
             glass_mesh_warnings(mesh, context.averaged_meshes.contains(&Arc::as_ptr(mesh)))
                 .into_iter()
                 .for_each(|problem| context.warn(format!("{name}: {problem}")));
         }
-        if let (Shape::Mesh(mesh), Some(file)) = (written, shape.it.file)
+        if let (Shape::Mesh(mesh), Some(file)) = (written, shape.value.file)
             && mesh.bare() > 0
-            && (named.it.varies() || relief.is_some())
+            && (named.value.varies() || relief.is_some())
         {
             let problem = match mesh.bare() {
                 1 => format!("1 triangle of {file} has no texture coordinates: it shows"),
@@ -136,7 +136,7 @@ fn glass_mesh_warnings(mesh: &Mesh, is_averaged: bool) -> Vec<String> {
 /// Reads what the camera sees of an object.
 fn visibility(object: &mut Fields) -> Option<Visibility> {
     let visible = object.or("visible_to_camera", true, Value::yes_or_no);
-    let mut kind = |key| object.maybe(key, spanned(Value::yes_or_no)).map(|value| value.filter(|value| value.it));
+    let mut kind = |key| object.maybe(key, spanned(Value::yes_or_no)).map(|value| value.filter(|value| value.value));
     let (holdout, catcher) = (kind("holdout"), kind("shadow_catcher"));
     let both = |key: Spanned<'_, bool>, other: &str| {
         let help = "an object is hidden, or cuts a hole, or shows the shadows on it: keep one of these";

@@ -42,7 +42,7 @@ pub(super) fn placed<'d>(drafts: Vec<ObjectDraft<'d>>, materials: &Materials<'d>
     let mut places = HashMap::<&str, usize>::new();
     for draft in &drafts {
         let count = draft.instances.as_ref().map_or(1, Vec::len);
-        draft.shape.it.file.into_iter().for_each(|file| *places.entry(file).or_default() += count);
+        draft.shape.value.file.into_iter().for_each(|file| *places.entry(file).or_default() += count);
     }
     for draft in drafts {
         let Some(Some(material)) = materials.get(draft.material) else { continue };
@@ -52,12 +52,12 @@ pub(super) fn placed<'d>(drafts: Vec<ObjectDraft<'d>>, materials: &Materials<'d>
             placed.materials.len() as u32 - 1
         });
         let maps = match (&draft.instances, material.has_axis()) {
-            (Some(instances), true) => instances.iter().map(|map| map.it).collect(),
-            (None, true) => vec![draft.map.it],
+            (Some(instances), true) => instances.iter().map(|map| map.value).collect(),
+            (None, true) => vec![draft.map.value],
             (_, false) => Vec::new(),
         };
         let (shape, name) = (draft.shape.place, draft.material);
-        let is_shared = draft.shape.it.file.is_some_and(|file| places[file] > 1);
+        let is_shared = draft.shape.value.file.is_some_and(|file| places[file] > 1);
         let objects = build_objects(draft, is_shared, number, material.varies()).unwrap_or_default();
         for (instance, mut object) in objects.into_iter().enumerate() {
             if let Some(map) = maps.get(instance) {
@@ -91,7 +91,7 @@ fn build_objects(draft: ObjectDraft, is_shared: bool, material: u32, varies: boo
     let ObjectDraft {
         name,
         material: material_name,
-        shape: Spanned { place, it: written },
+        shape: Spanned { place, value: written },
         map,
         instances,
         relief,
@@ -113,15 +113,15 @@ fn build_objects(draft: ObjectDraft, is_shared: bool, material: u32, varies: boo
         Some(Object { name, asset, shape, material, light: None, coordinates, varies, group, visibility, relief })
     };
     let Some(instances) = instances else {
-        let coordinates = Coordinates::new(&written.shape, &map.it);
-        let shape = if is_shared { written.shape.copied(&map.it) } else { written.shape.transformed(&map.it) };
+        let coordinates = Coordinates::new(&written.shape, &map.value);
+        let shape = if is_shared { written.shape.copied(&map.value) } else { written.shape.transformed(&map.value) };
         check_size(&written.shape, &shape, map, place)?;
         return Some(vec![object(name, shape, coordinates)?]);
     };
     let instance = |(number, map): (usize, Spanned<Transform>)| {
-        let shape = written.shape.copied(&map.it);
+        let shape = written.shape.copied(&map.value);
         check_size(&written.shape, &shape, map, map.place)?;
-        object(format!("{name} [{}]", number + 1), shape, Coordinates::new(&written.shape, &map.it))
+        object(format!("{name} [{}]", number + 1), shape, Coordinates::new(&written.shape, &map.value))
     };
     let placed: Vec<_> = instances.into_iter().enumerate().map(instance).collect();
     placed.into_iter().collect()

@@ -79,7 +79,7 @@ fn disc(value: Value) -> Option<Shape> {
         let radius = disc.need("radius", |value| length(value, "a radius"));
         let u = disc.maybe("u", spanned(direction));
         let (center, normal, radius, u) = (center?, normal?, radius?, u?);
-        match Disc::new(center, normal, radius, u.map(|u| u.it)) {
+        match Disc::new(center, normal, radius, u.map(|u| u.value)) {
             Some(disc) => Some(Shape::Disc(disc)),
             None => u.map_or(value, |u| u.place).refuse("a disc's u must not be parallel to its normal"),
         }
@@ -92,10 +92,10 @@ fn quad(value: Value) -> Option<Shape> {
         let u = quad.need("u", direction);
         let v = quad.need("v", spanned(direction));
         let (center, u, v) = (center?, u?, v?);
-        if u.normalize().cross(v.it.normalize()) == DVec3::ZERO {
+        if u.normalize().cross(v.value.normalize()) == DVec3::ZERO {
             return v.place.refuse("a quad's u and v must not be parallel");
         }
-        Some(Shape::Quad(Quad::new(center, u, v.it)))
+        Some(Shape::Quad(Quad::new(center, u, v.value)))
     })
 }
 
@@ -124,7 +124,7 @@ pub(super) fn check_size(shape: &Shape, placed: &Shape, map: Spanned<Transform>,
         }
         _ => None,
     };
-    let thin = edges.map_or(wide.max_element(), |edges| thickness(edges, &map.it));
+    let thin = edges.map_or(wide.max_element(), |edges| thickness(edges, &map.value));
     if !(thin >= MIN_LENGTH && far <= 2.0 * MAX_LENGTH) {
         return map.place.refuse("this makes the shape too small, too large or too far away");
     }

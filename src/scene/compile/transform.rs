@@ -73,7 +73,7 @@ pub(super) fn steps(value: Value) -> Option<Vec<Spanned<Step>>> {
 
 /// Returns the map of the steps, one after another, applied after a first map.
 pub(super) fn compose_steps(steps: &[Spanned<Step>], first: Transform) -> Option<Transform> {
-    steps.iter().try_fold(first, |map, Spanned { place, it: step }| {
+    steps.iter().try_fold(first, |map, Spanned { place, value: step }| {
         let next = match *step {
             Step::Scale(factors) => Transform::scale(factors),
             Step::Rotate(map) | Step::Matrix(map) => map,

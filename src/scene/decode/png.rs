@@ -4,7 +4,7 @@ use png::{BitDepth, Decoder, DecodingError, Info, Limits, ScaledFloat, SourceChr
 
 use super::texels::{IntegerImage, IntegerTexels, Unreadable, fits};
 use super::{exif, icc};
-use crate::film::MOST_TEXELS;
+use crate::film::MAX_TEXELS;
 use crate::spectrum::{ColorSpace, Primaries};
 
 /// Reads a PNG (ISO/IEC 15948). Palettes, transparent colors and depths below 8 bits are expanded to numbers of 8 bits.
@@ -12,7 +12,7 @@ use crate::spectrum::{ColorSpace, Primaries};
 /// # Errors
 /// If the file is not a PNG, is damaged, or claims an impossible size.
 pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<IntegerImage, Unreadable> {
-    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 12 * MOST_TEXELS });
+    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 12 * MAX_TEXELS });
     decoder.set_ignore_text_chunk(true);
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info()?;

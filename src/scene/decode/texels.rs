@@ -107,7 +107,7 @@ impl Unreadable {
 
 /// Refuses images with no texels or too many, and sizes that take more `bytes` than the file can hold.
 pub(super) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Result<(), Unreadable> {
-    if let Some(reason) = film::too_large(width, height, film::MOST_TEXELS) {
+    if let Some(reason) = film::too_large(width, height, film::MAX_TEXELS) {
         return Err(Unreadable::Large(reason));
     }
     film::fits(width, height, bytes, file).map_err(Unreadable::Unfit)

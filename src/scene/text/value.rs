@@ -293,14 +293,14 @@ impl<'d> Value<'d> {
 #[derive(Clone, Copy)]
 pub(in crate::scene) struct Spanned<'d, T> {
     pub(in crate::scene) place: Value<'d>,
-    pub(in crate::scene) it: T,
+    pub(in crate::scene) value: T,
 }
 
 /// Wraps a reader so that it also returns the place of the value.
 pub(in crate::scene) fn spanned<'d, T>(
     mut read: impl FnMut(Value<'d>) -> Option<T>,
 ) -> impl FnMut(Value<'d>) -> Option<Spanned<'d, T>> {
-    move |place| read(place).map(|it| Spanned { place, it })
+    move |place| read(place).map(|value| Spanned { place, value })
 }
 
 /// Returns a list as an array if it has the right length. Otherwise, `other` reports its length.

@@ -9,7 +9,7 @@ mod vectors;
 mod walk;
 
 pub use vectors::{Computation, Crossings, GROUP, Instructions, Line, Number, Vectors, prefetch};
-pub use walk::Visitor;
+pub use walk::{VectorVisitor, Visitor};
 
 use crate::math::{Bounds, Ray};
 use build::Builder;
@@ -56,6 +56,17 @@ impl Bvh {
     /// Calls the visitor for the leaves whose boxes the ray may meet before `t_max`, nearer ones first if `ORDERED`.
     #[inline]
     pub fn walk<const ORDERED: bool>(&self, ray: &Ray, t_max: f64, visitor: &mut impl Visitor) {
+        self.walk_with_vectors::<ORDERED>(ray, t_max, visitor);
+    }
+
+    /// Calls the visitor like [`walk`](Self::walk), and lends it the vector instructions of the machine.
+    #[inline]
+    pub(super) fn walk_with_vectors<const ORDERED: bool>(
+        &self,
+        ray: &Ray,
+        t_max: f64,
+        visitor: &mut impl VectorVisitor,
+    ) {
         self.instructions.run(Walk::<ORDERED, _> { root: self.root, nodes: &self.nodes, ray, t_max, visitor })
     }
 

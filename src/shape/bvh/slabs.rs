@@ -48,6 +48,7 @@ pub const NO_ITEM: u32 = u32::MAX;
 /// roundings of b - o, of 1 / d and of the product are relative. Three of u on each side and one of the factor are less
 /// than the 12 u by which the far distance is enlarged (Ize 2013, *Robust BVH Ray Traversal*). If 1 / d overflows, it
 /// becomes the largest number at entry and infinite at exit, which is conservative too.
+#[derive(Clone, Copy, Debug)]
 pub struct Slabs {
     pub backward: [bool; 3],
     pub entry: [f32; 3],

@@ -33,6 +33,7 @@ pub trait Vectors: Copy {
 }
 
 /// A ray in the form that the test of four triangles takes: sheared so that it runs along its third axis.
+#[derive(Clone, Copy, Debug)]
 pub struct Line {
     pub origin: [f64; 3],
     pub shear: [f64; 3],
@@ -41,6 +42,7 @@ pub struct Line {
 }
 
 /// Where a line meets four triangles.
+#[derive(Clone, Copy, Debug)]
 pub struct Crossings {
     /// A bit for each triangle that the line meets.
     pub hits: u32,

@@ -9,13 +9,26 @@ use crate::math::Ray;
 /// What a walk does in a leaf.
 pub trait Visitor {
     /// Visits some groups of items. Returns the new `t_max`, or `None` to end the walk.
+    fn visit(&mut self, first: usize, groups: usize, t_max: f64) -> Option<f64>;
+}
+
+/// What a walk does in a leaf with vector instructions.
+pub trait VectorVisitor {
+    /// Visits some groups of items. Returns the new `t_max`, or `None` to end the walk.
     ///
-    /// Implementations that use vectors are `#[inline(always)]`.
+    /// Implementations are `#[inline(always)]`.
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64>;
 
     /// Prefetches a group that will be visited soon.
     #[inline(always)]
     fn prefetch(&self, _group: usize) {}
+}
+
+impl<T: Visitor> VectorVisitor for T {
+    #[inline(always)]
+    fn visit(&mut self, _: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64> {
+        Visitor::visit(self, first, groups, t_max)
+    }
 }
 
 /// A walk through the tree, which visits nearer boxes first if `ORDERED`, and boxes in any order otherwise.
@@ -27,7 +40,7 @@ pub struct Walk<'a, const ORDERED: bool, T> {
     pub visitor: &'a mut T,
 }
 
-impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
+impl<const ORDERED: bool, T: VectorVisitor> Computation for Walk<'_, ORDERED, T> {
     type Output = ();
 
     #[inline(always)]

@@ -11,8 +11,8 @@ pub fn may_aim(material: &Material<Table>) -> bool {
 }
 
 /// Returns the albedo of a surface, in the lane where it is highest; for plastic, it is approximate.
-pub fn albedo<const N: usize>(at: &Interaction<N>) -> f64 {
-    let Interaction { material, context, flat, .. } = at;
+pub fn albedo<const N: usize>(interaction: &Interaction<N>) -> f64 {
+    let Interaction { material, context, flat, .. } = interaction;
     let up = shading::evaluate(material, context, *flat, *flat);
     up.map_or(0.0, |(bsdf_cos, pdf)| bsdf_cos.0.iter().fold(0.0, |most, &lane| f64::from(lane).max(most)) / pdf)
 }
@@ -20,8 +20,13 @@ pub fn albedo<const N: usize>(at: &Interaction<N>) -> f64 {
 /// Samples the branches of a surface whose bounces are aimed.
 ///
 /// Roulette ends aimed paths as often as others: what their density takes from the weight does not measure importance.
-pub fn scatter_aimed<const N: usize>(aiming: &Aiming, at: &Interaction<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
-    let Interaction { material, context, flat, .. } = at;
+pub fn scatter_aimed<const N: usize>(
+    aiming: &Aiming,
+    interaction: &Interaction<N>,
+    u: [f64; 2],
+    branches: &mut Vec<Branch<N>>,
+) {
+    let Interaction { material, context, flat, .. } = interaction;
     let divided = aiming.choose_technique(u[0]);
     shading::scatter(material, context, *flat, [divided.err().unwrap_or(0.5), u[1]], branches);
     if let Ok(aimed) = divided {

@@ -23,11 +23,11 @@ use crate::trace::walk::{
 pub struct DirectLighting<'a, const N: usize, P> {
     pub world: &'a World,
     pub path: &'a Path<N, P>,
-    pub at: &'a Interaction<'a, N>,
+    pub interaction: &'a Interaction<'a, N>,
     /// The dye that the light excites, if the path follows what excites one.
     pub excitation: Option<&'a Excitation<N, P>>,
     /// Whether the path continues from here and may hit a light by itself.
-    pub goes_on: bool,
+    pub continues: bool,
     /// Whether every light is sampled, or only one.
     pub all_lights: bool,
     /// The object that last occluded a light.
@@ -75,12 +75,18 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     /// If light also comes from beyond the surface, both sides are sampled or, if only one light is sampled, one side
     /// that is chosen at random.
     pub fn gather(&self, sampler: &Sampler, sensor: &mut Sensor<N>) -> f64 {
-        let (at, parted) = (self.at, self.path.parted);
-        let leaves_narrow = self.path.leaves_narrow_to_photons(self.world, at);
-        let without_photon_lobe = leaves_narrow.then(|| at.with_lobes(Lobes::DIFFUSE_REFLECTION));
+        let (interaction, parted) = (self.interaction, self.path.parted);
+        let leaves_narrow = self.path.leaves_narrow_to_photons(self.world, interaction);
+        let without_photon_lobe = leaves_narrow.then(|| interaction.with_lobes(Lobes::DIFFUSE_REFLECTION));
         let without_photon_lobe = without_photon_lobe.as_ref();
-        let near = Side { normal: at.flat, chance: None, inside: at.boundary.here, parted, without_photon_lobe };
-        if !at.lobes.intersects(Lobes::NON_DELTA_TRANSMISSION) {
+        let near = Side {
+            normal: interaction.flat,
+            chance: None,
+            inside: interaction.boundary.here,
+            parted,
+            without_photon_lobe,
+        };
+        if !interaction.lobes.intersects(Lobes::NON_DELTA_TRANSMISSION) {
             self.gather_side(&near, sampler, sensor);
             return 1.0;
         }
@@ -91,8 +97,12 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
             self.gather_side(&near, sampler, sensor);
         }
         if 1.0 - u <= chance {
-            let far =
-                Side { normal: -near.normal, inside: at.boundary.beyond, parted: parted || at.is_parting, ..near };
+            let far = Side {
+                normal: -near.normal,
+                inside: interaction.boundary.beyond,
+                parted: parted || interaction.is_parting,
+                ..near
+            };
             self.gather_side(&far, sampler, sensor);
         }
         chance
@@ -120,7 +130,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
             }
         } else {
             let u = refine(self.u[3], sampler.get_random_4d(key, MORE_DIGITS)[0]);
-            if let Some(drawn) = self.world.light_sampler.sample(self.at.point.position, side.normal, u) {
+            if let Some(drawn) = self.world.light_sampler.sample(self.interaction.point.position, side.normal, u) {
                 sample_light(drawn, [self.u[0], self.u[1]]);
             }
         }
@@ -129,16 +139,16 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     /// Returns a ray to a light that was chosen with a probability; `None` if the sensor receives nothing from it.
     fn shadow_ray(&self, side: &Side<N>, drawn: SampledLight, u: [f64; 2]) -> Option<ShadowRay<N>> {
         let normal = side.normal;
-        let sample = self.world.scene.lights[drawn.light].sample_li_in_part(self.at.point, normal, u)?;
-        let at = self.lit_surface(side, drawn.light, &sample.ray);
-        let (context, wi) = (&at.context, sample.ray.direction);
+        let sample = self.world.scene.lights[drawn.light].sample_li_in_part(self.interaction.point, normal, u)?;
+        let interaction = self.lit_surface(side, drawn.light, &sample.ray);
+        let (context, wi) = (&interaction.context, sample.ray.direction);
         let is_found = |vertices: &LightVertices<N>| vertices.carry(self.world, drawn.light, &sample.ray);
         if wi.dot(normal) <= 0.0 || self.vertices.is_some_and(is_found) {
             return None;
         }
         let flat = if normal.dot(context.wo) < 0.0 { -normal } else { normal };
-        let (bsdf_cos, mut bsdf_pdf) = shading::evaluate(at.material, context, flat, wi)?;
-        if !std::ptr::eq(at, self.at) {
+        let (bsdf_cos, mut bsdf_pdf) = shading::evaluate(interaction.material, context, flat, wi)?;
+        if !std::ptr::eq(interaction, self.interaction) {
             // If photons carry the light that the path hits, the path finds no light by itself.
             bsdf_pdf = 0.0;
         }
@@ -149,7 +159,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
 
     /// Returns the surface that a light illuminates along a ray: without the lobe that is left to photons, if any.
     fn lit_surface<'s>(&'s self, side: &Side<'s, N>, light: LightId, ray: &Ray) -> &'s Interaction<'s, N> {
-        side.without_photon_lobe.filter(|_| self.world.is_found_by_photons(light, ray)).unwrap_or(self.at)
+        side.without_photon_lobe.filter(|_| self.world.is_found_by_photons(light, ray)).unwrap_or(self.interaction)
     }
 
     /// Passes the light along a ray to the sensor, unless something occludes the light.
@@ -157,22 +167,22 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let world = self.world;
         let ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor } = shadow_ray;
         let LightSample { ray, distance, object, part, .. } = sample;
-        let at = self.lit_surface(side, *light, ray);
-        let context = &at.context;
-        let ends = RayEnds { left: self.path.last_primitive, light: *object, part: *part };
+        let interaction = self.lit_surface(side, *light, ray);
+        let context = &interaction.context;
+        let ends = RayEnds { start: self.path.last_primitive, light: *object, part: *part };
         let (distance, inside, last_occluder) = (*distance, side.inside, self.last_occluder);
         let occluders = Occluders::Objects(self.path.object_set);
         let segment = VisibilityTest { ray, distance, ends, inside, occluders, last_occluder };
         let wi = ray.direction;
         let light_of = || world.scene.lights[*light].toward(context.draw, wi, sample.uv);
         let mut bsdf_cos = *bsdf_cos;
-        let toward = || self.path.polarization.toward_light(at, wi, &mut bsdf_cos);
+        let toward = || self.path.polarization.toward_light(interaction, wi, &mut bsdf_cos);
         let arriving = segment.arriving_light(world, context.draw, toward, light_of);
         let Some((mut arriving, on_its_way)) = arriving else { return };
         let polarized = on_its_way.at_polarized_light(&world.scene.lights[*light], wi, &mut arriving);
         let on_its_way = polarized.as_ref().unwrap_or(&on_its_way);
         // The density of aimed bounces takes time, so it is computed only for rays that are not occluded.
-        let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
+        let factor = match self.aiming.filter(|_| self.continues && sample.pdf.is_some()) {
             Some(aiming) => self.factor(sample, *probability, aiming.pdf(wi, *bsdf_pdf)),
             None => *factor,
         };
@@ -181,9 +191,9 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let received = ReceivedLight { source: light, draw: context.draw, lanes, parted: side.parted };
         let found_light = FoundLight::new(world, &received, self.excitation);
         let (rgb, dispersed) = (found_light.rgb, found_light.dispersed);
-        let polarization_change = self.path.polarization.change_along(at, wi, on_its_way, &found_light);
+        let polarization_change = self.path.polarization.change_along(interaction, wi, on_its_way, &found_light);
         let (light, found, bounces) = (Some(light), FoundBy::Sampled, self.path.bounces + 1);
-        let first = self.path.first_lobe(world, self.at, wi, side.normal != self.at.flat);
+        let first = self.path.first_lobe(world, self.interaction, wi, side.normal != self.interaction.flat);
         sensor.receive(
             Contribution { light, found, rgb, polarization_change, first, bounces, dispersed },
             &found_light,
@@ -196,7 +206,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     fn factor(&self, sample: &LightSample, probability: f64, bounce_pdf: f64) -> f64 {
         let Some(pdf) = sample.pdf else { return sample.factor / probability };
         let pdf = pdf * probability;
-        let weight = if self.goes_on { power_heuristic(pdf, bounce_pdf) } else { 1.0 };
+        let weight = if self.continues { power_heuristic(pdf, bounce_pdf) } else { 1.0 };
         sample.factor * weight / pdf
     }
 }

@@ -145,7 +145,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     pub fn record_surface<P: Polarization<N>>(
         &mut self,
         path: &Path<N, P>,
-        at: &Interaction<N>,
+        interaction: &Interaction<N>,
         surface: &Surface<N, P>,
         sampler: &Sampler,
     ) {
@@ -155,31 +155,35 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         }
         // A filter in front of the camera is not a property of a surface.
         let unfiltered = 1.0 / self.world.scene.camera.transmittance();
-        let share = if layers.shows_surfaces() { surface.share(path, at, layers.first, unfiltered) } else { 0.0 };
+        let share =
+            if layers.shows_surfaces() { surface.share(path, interaction, layers.first, unfiltered) } else { 0.0 };
         if share <= 0.0 {
             return;
         }
-        let normal = shading::unbent_normal(at.point, at.context.wo);
+        let normal = shading::unbent_normal(interaction.point, interaction.context.wo);
         layers.add_to(Layer::Normal, &mut self.row, (share * normal).to_array());
-        layers.add_to(Layer::GeometricNormal, &mut self.row, (share * at.flat).to_array());
+        layers.add_to(Layer::GeometricNormal, &mut self.row, (share * interaction.flat).to_array());
         // What passes through a pane belongs to it like what glass refracts, unless what is behind counts by itself.
-        let panes = surface.through.filter(|_| layers.first == FirstSurface::Met).map(|through| through.straight.panes);
+        let panes = surface
+            .transmitted
+            .filter(|_| layers.first == FirstSurface::Met)
+            .map(|transmitted| transmitted.straight.panes);
         // Of surfaces with holes and what is behind them, one was hit at random. Its weight already includes that.
         let chance = if layers.first == FirstSurface::Met { self.chance } else { 1.0 };
-        let albedo = self.albedo(path, at, panes, sampler).map(|x| unfiltered * x / chance);
+        let albedo = self.albedo(path, interaction, panes, sampler).map(|x| unfiltered * x / chance);
         layers.add_to(Layer::Albedo, &mut self.row, albedo);
         if share > self.share {
             self.share = share;
-            let position = at.point.position;
-            let object = &self.world.scene.objects[at.object as usize];
+            let position = interaction.point.position;
+            let object = &self.world.scene.objects[interaction.object as usize];
             self.write_layer(Layer::Position, &position.to_array());
-            self.write_layer(Layer::Uv, &object.chart_uv(&surface.surface_hit.hit.intersection, at.point));
+            self.write_layer(Layer::Uv, &object.chart_uv(&surface.surface_hit.hit.intersection, interaction.point));
         }
     }
 
     fn write_layer(&mut self, layer: Layer, numbers: &[f64]) {
-        if let Some(at) = self.world.layers.offset(layer) {
-            self.row[at..at + numbers.len()].copy_from_slice(numbers);
+        if let Some(offset) = self.world.layers.offset(layer) {
+            self.row[offset..offset + numbers.len()].copy_from_slice(numbers);
         }
     }
 
@@ -188,26 +192,26 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     fn albedo<P: Polarization<N>>(
         &mut self,
         path: &Path<N, P>,
-        at: &Interaction<N>,
+        interaction: &Interaction<N>,
         panes: Option<Lanes<N>>,
         sampler: &Sampler,
     ) -> [f64; 3] {
         let layers = &self.world.layers;
         let (Some(white), Some(_)) = (&layers.white, layers.offset(Layer::Albedo)) else { return [0.0; 3] };
         let [u, v, ..] = sampler.get_random_4d(path.key, ALBEDO);
-        let (context, draw) = (&at.context, at.context.draw);
+        let (context, draw) = (&interaction.context, interaction.context.draw);
         self.branches.clear();
-        shading::scatter(at.material, context, at.flat, [u, v], &mut self.branches);
+        shading::scatter(interaction.material, context, interaction.flat, [u, v], &mut self.branches);
         // Where light crosses, radiance changes by each lane's own index, and `eta_scale` by that of the ray.
         let crossing = context.forward().map(|twice| Lanes::from_fn(|i| twice[i].sqrt()));
-        let through = panes.map(|panes| white.times(draw, path.throughput.of(panes), path.parted));
-        let mut albedo = through.map_or([0.0; 3], |rgb| rgb.map(|x| x / path.eta_scale));
+        let panes_rgb = panes.map(|panes| white.times(draw, path.throughput.of(panes), path.parted));
+        let mut albedo = panes_rgb.map_or([0.0; 3], |rgb| rgb.map(|x| x / path.eta_scale));
         for branch in &self.branches {
             let share = match crossing {
                 Some(crossing) if branch.crosses => branch.share * crossing,
                 _ => branch.share,
             };
-            let parted = path.parted || (at.is_parting && branch.crosses);
+            let parted = path.parted || (interaction.is_parting && branch.crosses);
             let rgb = white.times(draw, path.throughput.of(share), parted);
             let scale = path.eta_scale * branch.eta_scale;
             (0..3).for_each(|channel| albedo[channel] += rgb[channel] / scale);

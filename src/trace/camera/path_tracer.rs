@@ -9,7 +9,7 @@ use super::emitter_hit::EmitterHit;
 use super::layer_sample::LayerSample;
 use super::light_vertex_gathering::Resampling;
 use super::sensor::{Sensor, SensorEvent};
-use super::surface::{FirstHit, PathContinuation, Surface, Through};
+use super::surface::{FirstHit, PathContinuation, Surface, Transmitted};
 use crate::film::Layer;
 use crate::light::LightId;
 use crate::material::{Material, Straight};
@@ -94,8 +94,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             self.advance(&mut path, draw, sampler, &mut first);
             self.walker.pending.release(path);
         }
-        if let Transport::Deterministic { most, .. } = self.walker.transport {
-            self.walker.stats.by_chance += u64::from(self.walker.surfaces() > most);
+        if let Transport::Deterministic { max_sample_surfaces: max, .. } = self.walker.transport {
+            self.walker.stats.by_chance += u64::from(self.walker.surfaces() > max);
         }
         first
     }
@@ -125,7 +125,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
                 return self.walker.pass_hidden(path, &surface_hit, &hidden);
             }
         };
-        let mut through = self.walker.straight(path, draw, &surface_hit);
+        let mut transmitted = self.walker.straight(path, draw, &surface_hit);
         // Beyond a pane, a holdout is seen as through glass.
         let is_held_out = world.has_mattes
             && path.kind.is_from_camera()
@@ -133,13 +133,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             && world.visibility(surface_hit.hit.object) == Visibility::Holdout;
         if is_held_out {
             // What lies behind a pane is cut out with it, but not what lies behind a hole.
-            through.iter_mut().for_each(|through| through.straight = through.straight.through_holes());
-            through = through.filter(|through| !through.straight.holes.is_zero());
+            transmitted.iter_mut().for_each(|transmitted| transmitted.straight = transmitted.straight.through_holes());
+            transmitted = transmitted.filter(|transmitted| !transmitted.straight.holes.is_zero());
         }
         let samples_cutout = world.has_mattes && path.surfaces() == 0 && first.is_none();
-        let chance = if samples_cutout { self.sample_pass_through(path, draw, sampler, &mut through) } else { 1.0 };
-        let SurfaceHit { hit, point } = &surface_hit;
-        if let Some(PassThrough { straight, polarization }) = through
+        let chance = if samples_cutout { self.sample_pass_through(path, draw, sampler, &mut transmitted) } else { 1.0 };
+        let (SurfaceHit { hit, point }, transmitted) = (&surface_hit, transmitted.as_ref());
+        if let Some(&PassThrough { straight, polarization }) = transmitted
             && path.throughput.through(straight.share()) == path.throughput
         {
             *self.walker.pending.add(|| *path) = Path { polarization, ..path.beyond_surface(point) };
@@ -147,18 +147,18 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         path.vertices += 1;
         if is_held_out {
-            self.walker.audit.iter_mut().for_each(|audit| audit.end(path, through.as_ref(), draw));
-            return self.walker.pass_partly(path, point, through.as_ref());
+            self.walker.audit.iter_mut().for_each(|audit| audit.end(path, transmitted, draw));
+            return self.walker.pass_partly(path, point, transmitted);
         }
         let is_first = path.surfaces() == 1 && first.is_none();
-        let met = is_first.then(|| self.sample_first_hit(path, draw, sampler, &surface_hit, through.as_ref(), first));
+        let met = is_first.then(|| self.sample_first_hit(path, draw, sampler, &surface_hit, transmitted, first));
         self.receive(path, draw, EmitterHit::of_surface(world, draw, path, &surface_hit));
-        let surface = Surface { surface_hit: &surface_hit, boundary, through: through.as_ref(), first: met, chance };
+        let surface = Surface { surface_hit: &surface_hit, boundary, transmitted, first: met, chance };
         if path.surfaces() > world.method.max_bounces {
             return self.end_at_limit(path, draw, sampler, &surface);
         }
         self.scatter(path, draw, sampler, &surface);
-        if through.is_none() {
+        if transmitted.is_none() {
             self.sensor.report_bounce(world, path, draw, hit.intersection.t, before);
         }
     }
@@ -170,11 +170,11 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         draw: &Draw<N>,
         sampler: &Sampler,
         surface_hit: &SurfaceHit,
-        through: Option<&PassThrough<N, P>>,
+        transmitted: Option<&PassThrough<N, P>>,
         first: &mut Option<SurfacePoint>,
     ) -> FirstHit {
         let pass_through::Cutout { is_hit, weight, .. } =
-            pass_through::sample_cutout(self.walker.world, draw, sampler, path, through);
+            pass_through::sample_cutout(self.walker.world, draw, sampler, path, transmitted);
         if let Some(layers) = &mut self.sensor.layers {
             layers.set_object(is_hit.then_some(surface_hit.hit.object), weight);
         }
@@ -191,13 +191,15 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         path: &mut Path<N, P>,
         draw: &Draw<N>,
         sampler: &Sampler,
-        through: &mut Through<N, P>,
+        transmitted: &mut Transmitted<N, P>,
     ) -> f64 {
         let Method { transport, polarization, .. } = &self.walker.world.method;
         let is_by_chance = matches!(transport, Transport::Random { .. });
         // Beyond holes and panes together, light has the mean polarization of both.
         let is_mean = |straight: &Straight<N>| *polarization == Polarizing::Traced && !straight.panes.is_zero();
-        let Some(whole) = through.filter(|through| is_by_chance && !is_mean(&through.straight)) else { return 1.0 };
+        let Some(whole) = transmitted.filter(|transmitted| is_by_chance && !is_mean(&transmitted.straight)) else {
+            return 1.0;
+        };
         let pass_through::Cutout { is_hit, chance, .. } =
             pass_through::sample_cutout(self.walker.world, draw, sampler, path, Some(&whole));
         let before = path.throughput;
@@ -207,7 +209,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             path.key = path.key.child(0);
         }
         let straight = Straight { holes, panes, ..whole.straight };
-        *through = (!straight.share().is_zero()).then_some(PassThrough { straight, ..whole });
+        *transmitted = (!straight.share().is_zero()).then_some(PassThrough { straight, ..whole });
         path.throughput = path.throughput.scaled(1.0 / chance);
         self.walker.audit.iter_mut().for_each(|audit| audit.absorb(path, before, draw));
         if is_hit { chance } else { 1.0 }
@@ -215,17 +217,17 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
 
     /// Ends a path that has hit as many surfaces as allowed, except for what passes through.
     fn end_at_limit(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
-        let &Surface { surface_hit, boundary, through, .. } = surface;
+        let &Surface { surface_hit, boundary, transmitted, .. } = surface;
         if self.sensor.layers.is_some() {
-            let at = Interaction::new(self.walker.world, draw, &path.incident_ray(), surface_hit, boundary);
-            self.record_surface(path, &at, surface, sampler);
+            let interaction = Interaction::new(self.walker.world, draw, &path.incident_ray(), surface_hit, boundary);
+            self.record_surface(path, &interaction, surface, sampler);
         }
         if !matches!(self.walker.world.scene.material_of(surface_hit.hit.object), Material::Emissive(_)) {
             self.walker.stats.stopped += path.share(draw);
         } else if let Some(audit) = &mut self.walker.audit {
-            audit.end(path, through, draw);
+            audit.end(path, transmitted, draw);
         }
-        self.walker.pass_partly(path, &surface_hit.point, through);
+        self.walker.pass_partly(path, &surface_hit.point, transmitted);
     }
 
     /// Passes the light of the sky to the sensor, at the end of a path that hits nothing.
@@ -261,7 +263,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
 
     /// Samples the lights where a surface scatters widely, and lets the path continue: its branches become pending.
     fn scatter(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
-        let &Surface { surface_hit, boundary, through, first, .. } = surface;
+        let &Surface { surface_hit, boundary, transmitted, first, .. } = surface;
         let world = self.walker.world;
         if path.resampled && world.ends_light_paths(surface_hit.hit.object) {
             path.resampled = false;
@@ -271,24 +273,30 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if ends && !path.resampled {
             return;
         }
-        let at = Interaction::new(world, draw, &path.incident_ray(), surface_hit, boundary);
-        self.record_surface(path, &at, surface, sampler);
-        let continuation = PathContinuation { through, must_pass: first == Some(FirstHit::Beyond), gathers: !ends };
-        match self.follow_dyes(path, &at, sampler, continuation.must_pass) {
+        let interaction = Interaction::new(world, draw, &path.incident_ray(), surface_hit, boundary);
+        self.record_surface(path, &interaction, surface, sampler);
+        let continuation = PathContinuation { transmitted, must_pass: first == Some(FirstHit::Beyond), gathers: !ends };
+        match self.follow_dyes(path, &interaction, sampler, continuation.must_pass) {
             0.0 => {}
-            1.0 => self.scatter_at(path, &at, sampler, continuation),
+            1.0 => self.scatter_at(path, &interaction, sampler, continuation),
             factor => {
                 let throughput = path.throughput.scaled(factor);
-                self.scatter_at(&Path { throughput, ..*path }, &at, sampler, continuation);
+                self.scatter_at(&Path { throughput, ..*path }, &interaction, sampler, continuation);
             }
         }
     }
 
     /// Shows a surface to the layers, if any are requested.
     #[inline]
-    fn record_surface(&mut self, path: &Path<N, P>, at: &Interaction<N>, surface: &Surface<N, P>, sampler: &Sampler) {
+    fn record_surface(
+        &mut self,
+        path: &Path<N, P>,
+        interaction: &Interaction<N>,
+        surface: &Surface<N, P>,
+        sampler: &Sampler,
+    ) {
         if let Some(layers) = &mut self.sensor.layers {
-            layers.record_surface(path, at, surface, sampler);
+            layers.record_surface(path, interaction, surface, sampler);
         }
     }
 
@@ -300,21 +308,30 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
 
     /// Follows what excites the dyes of a surface. Returns the factor on its own scattering, 1 if `must_pass`.
     #[inline]
-    fn follow_dyes(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler, must_pass: bool) -> f64 {
+    fn follow_dyes(
+        &mut self,
+        path: &Path<N, P>,
+        interaction: &Interaction<N>,
+        sampler: &Sampler,
+        must_pass: bool,
+    ) -> f64 {
         let world = self.walker.world;
-        let Some(dyes) = world.dyes.as_ref().filter(|dyes| !dyes.of_object(&world.scene, at.object).is_empty()) else {
+        let Some(dyes) =
+            world.dyes.as_ref().filter(|dyes| !dyes.of_object(&world.scene, interaction.object).is_empty())
+        else {
             return 1.0;
         };
-        let all = must_pass || self.walker.follows_all(path, at.context.draw);
+        let all = must_pass || self.walker.follows_all(path, interaction.context.draw);
         let excitation = self.excitation(path);
-        let excited = DyeExcitation { world, dyes, path, at, follows_all: all, excitation: excitation.as_deref() }
-            .sample_paths(sampler);
+        let excited =
+            DyeExcitation { world, dyes, path, interaction, follows_all: all, excitation: excitation.as_deref() }
+                .sample_paths(sampler);
         for (excited_path, excitation) in excited.paths {
             let excitation = Rc::new(excitation);
             let path = Path { excitation: Some(self.excitations.len() as u32), ..excited_path };
             self.excitations.push(excitation.clone());
-            let continuation = PathContinuation { through: None, must_pass: false, gathers: true };
-            self.scatter_at(&path, &at.as_dye(&dyes.white, &excitation.draw), sampler, continuation);
+            let continuation = PathContinuation { transmitted: None, must_pass: false, gathers: true };
+            self.scatter_at(&path, &interaction.as_dye(&dyes.white, &excitation.draw), sampler, continuation);
         }
         excited.scatter_factor
     }
@@ -323,58 +340,69 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     fn scatter_at(
         &mut self,
         path: &Path<N, P>,
-        at: &Interaction<N>,
+        interaction: &Interaction<N>,
         sampler: &Sampler,
-        PathContinuation { through, must_pass, gathers }: PathContinuation<N, P>,
+        PathContinuation { transmitted, must_pass, gathers }: PathContinuation<N, P>,
     ) {
-        let (world, draw) = (self.walker.world, at.context.draw);
-        let material = at.material;
-        let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
+        let (world, draw) = (self.walker.world, interaction.context.draw);
+        let (material, normal, from) = (interaction.material, interaction.flat, interaction.point.position);
+        let continues = !interaction.lobes.is_diffuse() || path.diffuse_left > 0;
         let bright = world.bright.as_ref().filter(|_| may_aim(material));
-        let aiming = bright.and_then(|bright| bright.aiming(at.point.position, at.flat, || albedo(at)));
+        let aiming = bright.and_then(|bright| bright.aiming(from, normal, || albedo(interaction)));
         let (mut u, mut scatter) = ([0.0; 4], None);
-        if at.lobes.is_wide() {
+        if interaction.lobes.is_wide() {
             u = dimensions::scatter(sampler, path);
             let all_lights = world.samples_all_lights(|| path.weight(draw));
             let last_occluder = &self.walker.last_occluder;
             let (aiming, excitation) = (aiming.as_ref(), self.excitation(path));
             let excitation = excitation.as_deref();
             let vertices = self.vertices_at(path);
-            let lighting =
-                DirectLighting { world, path, at, excitation, goes_on, all_lights, last_occluder, u, aiming, vertices };
+            let lighting = DirectLighting {
+                world,
+                path,
+                interaction,
+                excitation,
+                continues,
+                all_lights,
+                last_occluder,
+                u,
+                aiming,
+                vertices,
+            };
             let chance = lighting.gather(sampler, &mut self.sensor);
-            if gathers && goes_on && path.kind != PathKind::Camera && !path.leaves_all_to_photons(world, at) {
-                self.gather_photons(path, at, sampler);
+            if gathers && continues && path.kind != PathKind::Camera && !path.leaves_all_to_photons(world, interaction)
+            {
+                self.gather_photons(path, interaction, sampler);
             }
-            let resampled = goes_on && self.resample(path, at, sampler);
-            let (pdf, from, normal, passed_through) = (0.0, at.point.position, at.flat, false);
+            let resampled = continues && self.resample(path, interaction, sampler);
+            let (pdf, passed_through) = (0.0, false);
             scatter = Some(ScatterSample { pdf, from, normal, chance, all_lights, passed_through, resampled });
         }
         self.walker.branches.clear();
         match &aiming {
-            Some(aiming) => scatter_aimed(aiming, at, [u[2], u[3]], &mut self.walker.branches),
-            None => shading::scatter(material, &at.context, at.flat, [u[2], u[3]], &mut self.walker.branches),
+            Some(aiming) => scatter_aimed(aiming, interaction, [u[2], u[3]], &mut self.walker.branches),
+            None => shading::scatter(material, &interaction.context, normal, [u[2], u[3]], &mut self.walker.branches),
         }
-        self.walker.polarize(path, at);
-        self.walker.report_to_audit(path, at, through.map(|through| &through.straight));
+        self.walker.polarize(path, interaction);
+        self.walker.report_to_audit(path, interaction, transmitted.map(|transmitted| &transmitted.straight));
         let (scatter, is_seen) = (scatter.as_ref(), path.is_seen);
-        let outgoing = OutgoingPath::new(world, path, at);
-        let mut outgoing = OutgoingPath { scatter, through, must_pass, is_seen, ..outgoing };
-        if !goes_on {
+        let outgoing = OutgoingPath::new(world, path, interaction);
+        let mut outgoing = OutgoingPath { scatter, transmitted, must_pass, is_seen, ..outgoing };
+        if !continues {
             self.walker.keep_delta_branches(&outgoing);
         }
         self.walker.follow(&mut outgoing, sampler);
     }
 
     /// Passes the light of light vertices to the sensor, if the path hits a diffuse surface. Returns whether it did.
-    fn resample(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) -> bool {
+    fn resample(&mut self, path: &Path<N, P>, interaction: &Interaction<N>, sampler: &Sampler) -> bool {
         let is_needed = path.object_set == ObjectSet::All && !path.resampled;
         let Some(vertices) = self.light_vertices.filter(|_| is_needed) else { return false };
         let world = self.walker.world;
-        if !at.lobes.is_diffuse() {
+        if !interaction.lobes.is_diffuse() {
             return false;
         }
-        let resampling = Resampling { world, path, at, vertices, last_occluder: &self.walker.last_occluder };
+        let resampling = Resampling { world, path, interaction, vertices, last_occluder: &self.walker.last_occluder };
         resampling.gather(sampler, &mut self.sensor);
         self.walker.stats.resampled += 1;
         true
@@ -401,13 +429,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             return false;
         }
         let rest_chance = vertices.rest_chance;
-        let goes_on = if self.walker.audit.is_some() { 1.0 } else { rest_chance.unwrap_or(MEASURED_SHARE) };
+        let continuation_chance = if self.walker.audit.is_some() { 1.0 } else { rest_chance.unwrap_or(MEASURED_SHARE) };
         // A pilot with an observer only needs to know about light.
         let is_needed =
             rest_chance.is_some() || (self.walker.world.method.has_limits() && self.sensor.observer.is_none());
-        if is_needed && u[1] < goes_on {
+        if is_needed && u[1] < continuation_chance {
             (path.resampled, path.ignores_light) = (true, rest_chance.is_none());
-            path.throughput = path.throughput.scaled(1.0 / goes_on);
+            path.throughput = path.throughput.scaled(1.0 / continuation_chance);
         } else {
             self.walker.audit.iter_mut().for_each(|audit| audit.end(path, None, draw));
         }
@@ -415,24 +443,24 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     }
 
     /// Passes the light of photons to the sensor, at a place that the path has reached by way of other surfaces.
-    fn gather_photons(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) {
+    fn gather_photons(&mut self, path: &Path<N, P>, interaction: &Interaction<N>, sampler: &Sampler) {
         if let Some(photons) = self.photons.filter(|_| path.object_set == ObjectSet::All) {
             let has_layers = self.sensor.layers.is_some();
             // At the first surface, each photon has its own lobe and number of bounces.
             let split = has_layers && (path.bounces == 0 || self.walker.world.layers.needs_photon_details());
             let excitation = self.excitation(path);
             let excitation = excitation.as_deref();
-            let center = GatherPoint { world: self.walker.world, path, at, excitation };
+            let center = GatherPoint { world: self.walker.world, path, interaction, excitation };
             let gather_with = |kernel, split| gather(photons, kernel, &center, sampler, split);
             let gathered = gather_with(&photons.kernel, split);
             if let Some(half_blur) = &photons.half_blur {
                 self.sensor.add_blur(gathered.all.rgb, gather_with(half_blur, false).all.rgb);
             }
-            let draw = excitation.map_or(at.context.draw, |dye| &dye.sensor_draw);
+            let draw = excitation.map_or(interaction.context.draw, |dye| &dye.sensor_draw);
             self.sensor.receive_gathered(&gathered, draw);
         }
         if let Some(observer) = self.sensor.observer.filter(|_| !self.sensor.counted.is_aimed()) {
-            observer(SensorEvent::Place(at.point.position));
+            observer(SensorEvent::Place(interaction.point.position));
         }
     }
 

@@ -14,23 +14,24 @@ const NEIGHBOR_STEPS: [f64; 2] = [0.5 * SEEN_PIXELS, 0.1 * SEEN_PIXELS];
 const PLACES_PER_SIDE: u32 = 6;
 
 /// Returns how many pixels apart two colors show what lies behind; `None` if an edge is too close to tell.
-pub fn color_separation(rays: &CameraRays, at: DVec2, first: &ColorWalk) -> Option<f64> {
-    let second = rays.walk(at, 1);
-    let far = pixel_separation(rays, NEIGHBOR_STEPS[0], at, [first, &second]);
-    (far >= SEEN_PIXELS || pixel_separation(rays, NEIGHBOR_STEPS[1], at, [first, &second]) < SEEN_PIXELS).then_some(far)
+pub fn color_separation(rays: &CameraRays, point: DVec2, first: &ColorWalk) -> Option<f64> {
+    let second = rays.walk(point, 1);
+    let far = pixel_separation(rays, NEIGHBOR_STEPS[0], point, [first, &second]);
+    (far >= SEEN_PIXELS || pixel_separation(rays, NEIGHBOR_STEPS[1], point, [first, &second]) < SEEN_PIXELS)
+        .then_some(far)
 }
 
 /// Returns the share of a pixel's light that dispersion pulls apart. Facets far smaller than a pixel count by area.
 pub fn separated_share(rays: &CameraRays, middle: DVec2) -> f64 {
     let place = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES_PER_SIDE) - 0.5;
     let share = |i: u32| {
-        let at = middle + DVec2::new(place(i % PLACES_PER_SIDE), place(i / PLACES_PER_SIDE));
-        let walks = [0, 1].map(|lane| rays.walk(at, lane));
+        let point = middle + DVec2::new(place(i % PLACES_PER_SIDE), place(i / PLACES_PER_SIDE));
+        let walks = [0, 1].map(|lane| rays.walk(point, lane));
         let [first, second] = &walks;
         let is_separated = || {
             // After other surfaces, light comes from elsewhere: among such facets, neighbors carry no information.
             may_differ(rays, [first, second]) && first.legs.len() != second.legs.len()
-                || pixel_separation(rays, NEIGHBOR_STEPS[1], at, [first, second]) >= SEEN_PIXELS
+                || pixel_separation(rays, NEIGHBOR_STEPS[1], point, [first, second]) >= SEEN_PIXELS
         };
         if first.dispersive && is_separated() { first.weight } else { 0.0 }
     };
@@ -49,14 +50,14 @@ fn may_differ(rays: &CameraRays, walks: [&ColorWalk; 2]) -> bool {
 ///
 /// The walks of a ray's neighbors, one step aside, show how far a pixel reaches. Both colors are compared at one
 /// distance, so that an edge behind the glass that only one of them misses does not count.
-fn pixel_separation(rays: &CameraRays, step: f64, at: DVec2, walks: [&ColorWalk; 2]) -> f64 {
+fn pixel_separation(rays: &CameraRays, step: f64, point: DVec2, walks: [&ColorWalk; 2]) -> f64 {
     let [first, second] = walks;
     if !may_differ(rays, walks) {
         return 0.0;
     }
     let distance = walks.map(ColorWalk::length).into_iter().find(|length| length.is_finite());
     let separation = distance_between(first, second, distance);
-    let neighbor = |x: f64, y: f64| rays.walk(at + DVec2::new(x, y) * step, 0);
+    let neighbor = |x: f64, y: f64| rays.walk(point + DVec2::new(x, y) * step, 0);
     let offsets = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
     let stretch =
         offsets.map(|(x, y)| distance_between(first, &neighbor(x, y), distance)).into_iter().fold(0.0, f64::max);

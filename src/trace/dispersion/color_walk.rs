@@ -144,14 +144,14 @@ impl Colors<'_> {
             let Some(met) = hit else { return walk };
             let surface_hit = SurfaceHit::new(self.world, &ray, met);
             key = key.child(0);
-            let at = WalkSurface {
+            let surface = WalkSurface {
                 ray: &ray,
                 surface_hit: &surface_hit,
                 u: sampler.get_random_4d(key, SURFACE),
                 lane,
                 choice,
             };
-            match self.next(&mut walk, &at) {
+            match self.next(&mut walk, &surface) {
                 Next::Straight => ray = surface_hit.point.leave(ray.direction),
                 Next::Toward(direction) => (ray, is_from_camera) = (surface_hit.point.leave(direction), false),
                 Next::End => {
@@ -167,8 +167,8 @@ impl Colors<'_> {
     }
 
     /// Returns how a walk continues at a surface. Beyond the bounce limit, surfaces show only their own light.
-    fn next(&self, walk: &mut ColorWalk, at: &WalkSurface) -> Next {
-        let next = self.continuation(walk, at);
+    fn next(&self, walk: &mut ColorWalk, surface: &WalkSurface) -> Next {
+        let next = self.continuation(walk, surface);
         if !matches!(next, Next::Toward(_) | Next::End) {
             return next;
         }
@@ -176,13 +176,13 @@ impl Colors<'_> {
             walk.surfaces += u32::from(matches!(next, Next::Toward(_)));
             return next;
         }
-        let is_light = self.world.scene.objects[at.surface_hit.hit.object as usize].light.is_some();
+        let is_light = self.world.scene.objects[surface.surface_hit.hit.object as usize].light.is_some();
         if is_light { Next::End } else { Next::Lost }
     }
 
     /// Returns how a walk continues at a surface, whatever the bounce limit.
-    fn continuation(&self, walk: &mut ColorWalk, at: &WalkSurface) -> Next {
-        let WalkSurface { ray, surface_hit, u, choice, .. } = *at;
+    fn continuation(&self, walk: &mut ColorWalk, surface: &WalkSurface) -> Next {
+        let WalkSurface { ray, surface_hit, u, choice, .. } = *surface;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(&surface_hit.point, wo);
         let inside = walk.media.inside(&world.scene);
@@ -194,7 +194,7 @@ impl Colors<'_> {
             return Next::Straight;
         }
         match world.scene.material_of(surface_hit.hit.object) {
-            Material::Dielectric(glass) => self.next_at_glass(walk, at, glass),
+            Material::Dielectric(glass) => self.next_at_glass(walk, surface, glass),
             Material::Mirror(_) => Next::Toward(reflect(wo, normal)),
             Material::Thin(pane) => {
                 let here = media::index(&world.scene, draw, inside)[0];
@@ -223,8 +223,8 @@ impl Colors<'_> {
     }
 
     /// Returns how a walk continues at the surface of a clear body.
-    fn next_at_glass(&self, walk: &mut ColorWalk, at: &WalkSurface, glass: &Dielectric<Table>) -> Next {
-        let WalkSurface { ray, surface_hit: SurfaceHit { hit, point }, u, lane, choice } = *at;
+    fn next_at_glass(&self, walk: &mut ColorWalk, surface: &WalkSurface, glass: &Dielectric<Table>) -> Next {
+        let WalkSurface { ray, surface_hit: SurfaceHit { hit, point }, u, lane, choice } = *surface;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(point, wo);
         let material = world.scene.objects[hit.object as usize].material;
@@ -264,9 +264,9 @@ pub struct CameraRays<'a> {
 
 impl CameraRays<'_> {
     /// Follows one lane through a place on the film.
-    pub fn walk(&self, at: DVec2, lane: usize) -> ColorWalk {
+    pub fn walk(&self, point: DVec2, lane: usize) -> ColorWalk {
         let world = self.colors.world;
-        let ray = world.scene.camera.ray(at);
+        let ray = world.scene.camera.ray(point);
         self.colors.walk(lane, ray, true, world.media_at_camera(&ray), &self.sampler, self.choice)
     }
 }

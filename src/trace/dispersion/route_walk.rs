@@ -95,55 +95,55 @@ impl<'a> RouteWalker<'a> {
         let [geometric, normal] = shading::normals(point, -walk.ray.direction);
         let uv = object.uv(&hit.intersection, point);
         let part = self.choose_part(material, uv, u[2]);
-        let at = RouteVertex { walk: &walk, material: object.material, point, normal, uv, part, u };
-        self.leave(&at, material.with_parts()[part], geometric);
+        let vertex = RouteVertex { walk: &walk, material: object.material, point, normal, uv, part, u };
+        self.leave(&vertex, material.with_parts()[part], geometric);
     }
 
     /// Continues from a surface in all ways that light may take.
-    fn leave(&mut self, at: &RouteVertex, material: &Material<Table>, geometric: DVec3) {
-        let RouteVertex { walk, normal, uv, .. } = *at;
+    fn leave(&mut self, vertex: &RouteVertex, material: &Material<Table>, geometric: DVec3) {
+        let RouteVertex { walk, normal, uv, .. } = *vertex;
         let world = self.world;
         match material {
             Material::Mirror(mirror) => {
                 let tint = self.draw.read_at(&mirror.reflectance, uv);
-                self.follow_reflection(at, normal, tint, 1.0);
+                self.follow_reflection(vertex, normal, tint, 1.0);
             }
             Material::Conductor(metal) => {
-                let facet = metal.roughness.surface().map_or(normal, |surface| at.facet(surface.facets()));
-                self.follow_reflection(at, facet, Lanes::ONE, 1.0);
+                let facet = metal.roughness.surface().map_or(normal, |surface| vertex.facet(surface.facets()));
+                self.follow_reflection(vertex, facet, Lanes::ONE, 1.0);
             }
             Material::Thin(pane) => {
                 let inside = media::index(&world.scene, &self.draw, walk.media.inside(&world.scene));
-                let r = pane.reflectance_of_one_surface(&self.draw, 1, inside[1], at.wo().dot(normal));
+                let r = pane.reflectance_of_one_surface(&self.draw, 1, inside[1], vertex.wo().dot(normal));
                 let tint = pane.transmittance().map_or(Lanes::ONE, |table| self.draw.read_at(table, uv));
                 let transmitted = (1.0 - r) * (1.0 - r);
-                let crossed = at.step(RouteEvent::Crossed);
+                let crossed = vertex.step(RouteEvent::Crossed);
                 let straight = walk.after(Some(crossed), tint, transmitted);
-                self.continue_straight(at, straight);
+                self.continue_straight(vertex, straight);
                 // Mirrored by the first surface, and by the second.
-                let mirrored_direction = reflect(at.wo(), normal);
-                self.continue_toward(at, walk.after(None, Lanes::ONE, r), mirrored_direction, 1);
+                let mirrored_direction = reflect(vertex.wo(), normal);
+                self.continue_toward(vertex, walk.after(None, Lanes::ONE, r), mirrored_direction, 1);
                 let mirrored_by_back = walk.after(Some(crossed), tint, r * transmitted).after(Some(crossed), tint, 1.0);
-                self.continue_toward(at, mirrored_by_back, mirrored_direction, 2);
+                self.continue_toward(vertex, mirrored_by_back, mirrored_direction, 2);
             }
             Material::Dielectric(glass) => self.follow_glass(
-                at,
+                vertex,
                 [&glass.reflectance, &glass.transmittance],
                 glass.roughness.interface().map(|rough| rough.facets()),
             ),
             Material::Diffuse(diffuse) => {
                 let tint = self.draw.read_at(&diffuse.reflectance, uv);
-                self.scattered(at, geometric, tint, 1.0);
+                self.scattered(vertex, geometric, tint, 1.0);
             }
             Material::Plastic(plastic) => {
                 let index = self.draw.read_exact(&plastic.index)[1];
-                let r = Interface::new(1.0, index, at.wo().dot(normal)).reflectance;
-                self.continue_toward(at, walk.after(None, Lanes::ONE, r), reflect(at.wo(), normal), 1);
+                let r = Interface::new(1.0, index, vertex.wo().dot(normal)).reflectance;
+                self.continue_toward(vertex, walk.after(None, Lanes::ONE, r), reflect(vertex.wo(), normal), 1);
                 let tint = self.draw.read_at(&plastic.reflectance, uv);
-                self.scattered(at, geometric, tint, 1.0 - r);
+                self.scattered(vertex, geometric, tint, 1.0 - r);
             }
             Material::Polarizer(_) | Material::Retarder(_) => {
-                self.continue_straight(at, walk.after(None, Lanes::ONE, 1.0));
+                self.continue_straight(vertex, walk.after(None, Lanes::ONE, 1.0));
             }
             Material::Emissive(_) | Material::Mix(_) | Material::Mask(_) => {}
         }
@@ -183,9 +183,9 @@ impl<'a> RouteWalker<'a> {
     }
 
     /// Continues from a surface in a direction in which light is mirrored or scattered, or crosses a body's surface.
-    fn continue_toward(&mut self, at: &RouteVertex, next: RouteWalk, direction: DVec3, number: usize) {
-        if let Some(surfaces) = self.count_surface(at.walk) {
-            self.enqueue(at, RouteWalk { is_from_camera: false, surfaces, ..next }, direction, number);
+    fn continue_toward(&mut self, vertex: &RouteVertex, next: RouteWalk, direction: DVec3, number: usize) {
+        if let Some(surfaces) = self.count_surface(vertex.walk) {
+            self.enqueue(vertex, RouteWalk { is_from_camera: false, surfaces, ..next }, direction, number);
         }
     }
 
@@ -195,68 +195,73 @@ impl<'a> RouteWalker<'a> {
     }
 
     /// Continues straight on as if nothing were there.
-    fn continue_straight(&mut self, at: &RouteVertex, next: RouteWalk) {
-        self.enqueue(at, next, at.walk.ray.direction, 0);
+    fn continue_straight(&mut self, vertex: &RouteVertex, next: RouteWalk) {
+        self.enqueue(vertex, next, vertex.walk.ray.direction, 0);
     }
 
-    fn enqueue(&mut self, at: &RouteVertex, next: RouteWalk, direction: DVec3, number: usize) {
+    fn enqueue(&mut self, vertex: &RouteVertex, next: RouteWalk, direction: DVec3, number: usize) {
         if next.max_throughput() > 0.0 {
-            let (ray, key) = (at.point.leave(direction), at.walk.key.child(number));
+            let (ray, key) = (vertex.point.leave(direction), vertex.walk.key.child(number));
             self.pending.push(RouteWalk { ray, key, ..next });
         }
     }
 
-    fn follow_reflection(&mut self, at: &RouteVertex, facet: DVec3, tint: Lanes<4>, factor: f64) {
-        let step = at.step(RouteEvent::Reflected(at.wo().dot(facet).abs().min(1.0)));
-        let next = at.walk.after(Some(step), tint, factor);
-        self.continue_toward(at, next, reflect(at.wo(), facet), 0);
+    fn follow_reflection(&mut self, vertex: &RouteVertex, facet: DVec3, tint: Lanes<4>, factor: f64) {
+        let step = vertex.step(RouteEvent::Reflected(vertex.wo().dot(facet).abs().min(1.0)));
+        let next = vertex.walk.after(Some(step), tint, factor);
+        self.continue_toward(vertex, next, reflect(vertex.wo(), facet), 0);
     }
 
-    fn follow_glass(&mut self, at: &RouteVertex, [reflectance, transmittance]: [&Table; 2], facets: Option<&Facets>) {
-        let (world, walk) = (self.world, at.walk);
-        let (boundary, _) = walk.media.at_surface(&world.scene, at.material, at.point, walk.ray.direction);
+    fn follow_glass(
+        &mut self,
+        vertex: &RouteVertex,
+        [reflectance, transmittance]: [&Table; 2],
+        facets: Option<&Facets>,
+    ) {
+        let (world, walk) = (self.world, vertex.walk);
+        let (boundary, _) = walk.media.at_surface(&world.scene, vertex.material, vertex.point, walk.ray.direction);
         let [n1, n2] = boundary.sides().map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
         let crossed = RouteWalk { media: walk.media.after_crossing(&boundary), ..walk.clone() };
         if boundary.here == boundary.beyond {
-            return self.continue_straight(at, crossed);
+            return self.continue_straight(vertex, crossed);
         }
-        let tint = self.draw.read_at(transmittance, at.uv);
-        let step = Some(at.step(RouteEvent::Crossed));
+        let tint = self.draw.read_at(transmittance, vertex.uv);
+        let step = Some(vertex.step(RouteEvent::Crossed));
         if n1 == n2 {
-            return self.continue_toward(at, crossed.after(step, tint, 1.0), walk.ray.direction, 0);
+            return self.continue_toward(vertex, crossed.after(step, tint, 1.0), walk.ray.direction, 0);
         }
-        let (wo, facet) = (at.wo(), facets.map_or(at.normal, |facets| at.facet(facets)));
+        let (wo, facet) = (vertex.wo(), facets.map_or(vertex.normal, |facets| vertex.facet(facets)));
         let interface = Interface::new(n1, n2, wo.dot(facet));
         if interface.transmittance > 0.0 {
             let next = crossed.after(step, tint, interface.transmittance);
-            self.continue_toward(at, next, interface.refract(wo, facet), 0);
+            self.continue_toward(vertex, next, interface.refract(wo, facet), 0);
         }
         let mirrored = walk.after(
-            Some(at.step(RouteEvent::Reflected(wo.dot(facet)))),
-            self.draw.read_at(reflectance, at.uv),
+            Some(vertex.step(RouteEvent::Reflected(wo.dot(facet)))),
+            self.draw.read_at(reflectance, vertex.uv),
             interface.reflectance,
         );
-        self.continue_toward(at, mirrored, reflect(wo, facet), 1);
+        self.continue_toward(vertex, mirrored, reflect(wo, facet), 1);
     }
 
     /// Follows the light that a surface scatters: directly from the lights, and from anywhere.
-    fn scattered(&mut self, at: &RouteVertex, geometric: DVec3, tint: Lanes<4>, factor: f64) {
-        let Some(surfaces) = self.count_surface(at.walk) else { return };
-        let next = at.walk.after(Some(at.step(RouteEvent::Scattered)), tint, factor);
+    fn scattered(&mut self, vertex: &RouteVertex, geometric: DVec3, tint: Lanes<4>, factor: f64) {
+        let Some(surfaces) = self.count_surface(vertex.walk) else { return };
+        let next = vertex.walk.after(Some(vertex.step(RouteEvent::Scattered)), tint, factor);
         let next = RouteWalk { scattered: next.scattered + 1, surfaces, ..next };
         for id in 0..self.world.scene.lights.len().min(MAX_LIGHTS) {
-            self.connect_to_light(at, &next, geometric, id);
+            self.connect_to_light(vertex, &next, geometric, id);
         }
         if next.scattered < MAX_SCATTERED && self.world.method.diffuse_bounces > 0 {
-            let direction = sample_cosine_about(geometric, [at.u[0], at.u[1]]);
-            self.continue_toward(at, next, direction, 3);
+            let direction = sample_cosine_about(geometric, [vertex.u[0], vertex.u[1]]);
+            self.continue_toward(vertex, next, direction, 3);
         }
     }
 
     /// Follows light directly from a light, through everything that lets it through.
-    fn connect_to_light(&mut self, at: &RouteVertex, walk: &RouteWalk, normal: DVec3, id: LightId) {
+    fn connect_to_light(&mut self, vertex: &RouteVertex, walk: &RouteWalk, normal: DVec3, id: LightId) {
         let (world, light) = (self.world, &self.world.scene.lights[id]);
-        let Some(sample) = light.sample_li(at.point, normal, [at.u[1], at.u[0]]) else { return };
+        let Some(sample) = light.sample_li(vertex.point, normal, [vertex.u[1], vertex.u[0]]) else { return };
         let mut walk = RouteWalk { ray: sample.ray, ..walk.clone() };
         let mut remaining_distance = sample.distance;
         for _ in 0..MAX_SURFACES {
@@ -270,10 +275,10 @@ impl<'a> RouteWalker<'a> {
             let object = &world.scene.objects[hit.object as usize];
             let surface_hit = SurfaceHit::new(world, &walk.ray, hit);
             let point = &surface_hit.point;
-            if !self.passes_hole(&walk, &surface_hit, at.u[2]) {
+            if !self.passes_hole(&walk, &surface_hit, vertex.u[2]) {
                 let uv = object.uv(&hit.intersection, point);
                 let material = world.scene.material_of(hit.object);
-                let part = self.choose_part(material, uv, at.u[2]);
+                let part = self.choose_part(material, uv, vertex.u[2]);
                 let transmittance = match material.with_parts()[part] {
                     Material::Thin(pane) => pane.transmittance(),
                     Material::Dielectric(glass) => Some(&glass.transmittance),

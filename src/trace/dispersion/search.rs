@@ -127,8 +127,8 @@ fn look(
     forks: &mut Vec<ViewCell>,
 ) -> Look {
     let rays = cell.rays(colors);
-    let at = [DVec2::new(0.5, 0.5), DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
-    let walks = at.map(|place| rays.walk(cell.corner + cell.size * place, 0));
+    let points = [DVec2::new(0.5, 0.5), DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
+    let walks = points.map(|place| rays.walk(cell.corner + cell.size * place, 0));
     let first = &walks[0];
     if cell.is_undivided(colors) && cell.choice == FollowedBranch::Brighter {
         if first.fork > 0.0 {

@@ -55,28 +55,31 @@ impl LayerSums {
             self.depths[pixel] = depth;
         }
         for &layer in &layers.requested {
-            let Some(at) = layers.offset(layer) else { continue };
+            let Some(offset) = layers.offset(layer) else { continue };
             match layer {
                 Layer::Samples | Layer::Shadow => {}
                 Layer::CryptoObject | Layer::CryptoMaterial | Layer::CryptoAsset => {}
-                Layer::Variance => add(&mut row[at..], sample.rgb.map(|x| x * x)),
+                Layer::Variance => add(&mut row[offset..], sample.rgb.map(|x| x * x)),
                 Layer::HalfA | Layer::HalfB => {
                     if early == (layer == Layer::HalfA) {
-                        add(&mut row[at..], sample.rgb);
-                        row[at + HALF_VALUES - 1] += 1.0;
+                        add(&mut row[offset..], sample.rgb);
+                        row[offset + HALF_VALUES - 1] += 1.0;
                     }
                 }
                 Layer::Position | Layer::Uv => {
                     let size = layer.channels().len();
                     if nearer {
-                        row[at..at + size].copy_from_slice(&sample_row[at..at + size]);
+                        row[offset..offset + size].copy_from_slice(&sample_row[offset..offset + size]);
                     }
                 }
                 Layer::Lights | Layer::Polarization => {
                     let size = if layer == Layer::Lights { 3 * layers.groups.len() } else { STOKES_VALUES };
-                    row[at..at + size].iter_mut().zip(&sample_row[at..]).for_each(|(sum, more)| *sum += more);
+                    row[offset..offset + size]
+                        .iter_mut()
+                        .zip(&sample_row[offset..])
+                        .for_each(|(sum, more)| *sum += more);
                 }
-                _ => add(&mut row[at..], std::array::from_fn(|i| sample_row[at + i])),
+                _ => add(&mut row[offset..], std::array::from_fn(|i| sample_row[offset + i])),
             }
         }
     }
@@ -196,14 +199,14 @@ impl PixelSums<'_> {
     }
 
     /// Returns the sums of a number over samples that are added and subtracted, and what photons contribute to it.
-    fn number(&self, at: usize) -> ([f64; 2], f64) {
-        let entry = |row: &[f64]| row.get(at).copied().unwrap_or_default();
+    fn number(&self, offset: usize) -> ([f64; 2], f64) {
+        let entry = |row: &[f64]| row.get(offset).copied().unwrap_or_default();
         (self.sums.map(entry), entry(self.splatted))
     }
 
     /// Returns the mean of a number that is light, including what photons contribute.
-    fn light(&self, at: usize) -> f64 {
-        let (sums, splatted) = self.number(at);
+    fn light(&self, offset: usize) -> f64 {
+        let (sums, splatted) = self.number(offset);
         self.weights.sum(sums) / self.weights.taken() + splatted
     }
 
@@ -221,8 +224,8 @@ impl PixelSums<'_> {
         weights.sum(all) / weights.taken() + difference * f64::from(others.kept()) / weights.taken()
     }
 
-    fn value(&self, layer: Layer, at: usize, channel: usize) -> f64 {
-        let (sums, splatted) = self.number(at + channel);
+    fn value(&self, layer: Layer, offset: usize, channel: usize) -> f64 {
+        let (sums, splatted) = self.number(offset + channel);
         let weights = &self.weights;
         match layer {
             Layer::Samples => weights.kept().into(),
@@ -236,11 +239,11 @@ impl PixelSums<'_> {
                 |variance| variance[channel],
             ),
             Layer::HalfA | Layer::HalfB => {
-                let (taken, _) = self.number(at + HALF_VALUES - 1);
+                let (taken, _) = self.number(offset + HALF_VALUES - 1);
                 let splat_weights = self.splat_weights.halves[usize::from(layer == Layer::HalfB)];
                 self.part_mean(sums, taken.map(|count| count as u32), channel) + splat_weights * splatted
             }
-            _ if layer.is_light() => self.light(at + channel),
+            _ if layer.is_light() => self.light(offset + channel),
             _ => sums[0] / weights.added(),
         }
     }

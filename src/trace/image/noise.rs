@@ -31,6 +31,7 @@ use crate::trace::replicates::{Products, REPLICATES, Replicates};
 ///
 /// Errors are relative: the root mean square over all pixels and film channels, divided by that of the image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Noise {
     /// Camera samples of each pixel for which the noise is measured.
     pub samples: u32,
@@ -240,11 +241,11 @@ pub fn measure<'t>(
             (Spread::default(), Spread::default(), Products::default());
         for pixel in 0..place.pixels() {
             let (x, y) = (pixel as i64 % i64::from(place.width), pixel as i64 / i64::from(place.width));
-            let at = [corner[0] + x, corner[1] + y];
-            tile_noise.add(at, &replicates.pixel(pixel, filter, each));
+            let pixel_place = [corner[0] + x, corner[1] + y];
+            tile_noise.add(pixel_place, &replicates.pixel(pixel, filter, each));
             replicates.blur(pixel, filter).iter().for_each(|replicates| tile_blur.add(replicates));
             let alphas = replicates.alpha(pixel, filter, each);
-            alphas.iter().for_each(|alphas| tile_alpha.add(at, &alphas.map(|alpha| [alpha])));
+            alphas.iter().for_each(|alphas| tile_alpha.add(pixel_place, &alphas.map(|alpha| [alpha])));
         }
         let count = REPLICATES as f64;
         let square = tile_noise.total() / tile_noise.numbers / (count * (count - 1.0));

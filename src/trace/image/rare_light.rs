@@ -17,6 +17,7 @@ use crate::trace::width::in_lanes_of;
 
 /// Light that only one of the replicates found.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct RareLight {
     /// The name of the light; `None` where photons of several were gathered.
     pub name: Option<String>,

@@ -2,6 +2,7 @@
 
 use std::any::Any;
 use std::borrow::Cow;
+use std::fmt;
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -33,6 +34,7 @@ const TILES_AT_A_TIME: usize = 256;
 
 /// What rendering noticed. Fields that only messages use are not serialized.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Report {
     /// Camera samples taken.
     pub samples: u64,
@@ -124,6 +126,14 @@ pub struct Rendering<'a> {
     photon_cost: PhotonCost,
 }
 
+impl fmt::Debug for Rendering<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        let mut shown = formatter.debug_struct("Rendering");
+        shown.field("shard", &self.shard).field("samples", &self.samples()).field("work", &self.work());
+        shown.field("done", &self.done()).finish_non_exhaustive()
+    }
+}
+
 impl<'a> Rendering<'a> {
     /// Creates a render without samples, or one of several parts of it, where all other pixels stay blank.
     pub fn of_shard(world: Cow<'a, World>, shard: Shard) -> Self {
@@ -134,11 +144,13 @@ impl<'a> Rendering<'a> {
     }
 
     /// Starts the time of a stop rule at another moment.
+    #[must_use]
     pub fn since(self, began: Instant) -> Self {
         Self { clock: Clock::new(began), ..self }
     }
 
     /// Counts photons as a number of camera samples in its [work](Self::work).
+    #[must_use]
     pub fn counting_photons_as(self, photon_cost: PhotonCost) -> Self {
         Self { photon_cost, ..self }
     }

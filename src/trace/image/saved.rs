@@ -65,7 +65,7 @@ pub fn restore(
     *progress = found;
     let has_more = match &world.method.stop {
         None => progress.samples == samples && samples > world.method.samples,
-        Some(stop) => progress.samples > stop.most,
+        Some(stop) => progress.samples > stop.max_samples,
     };
     if has_more {
         return Ok(Restored::HasMore(progress.samples));
@@ -102,7 +102,7 @@ pub fn restore(
 /// Returns why a render cannot continue from what was saved of one with the same plan and `samples` samples.
 fn objection(world: &World, progress: &Progress, end_of_pass: Option<u32>, samples: u32) -> Option<String> {
     if let Some(stop) = &world.method.stop {
-        let (end, most) = (progress.samples_after_stage(), stop.most);
+        let (end, most) = (progress.samples_after_stage(), stop.max_samples);
         return (end > most).then(|| format!("it is on its way to {end} samples per pixel, more than {most}"));
     }
     let requested = world.method.samples;

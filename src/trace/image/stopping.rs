@@ -20,6 +20,7 @@ const MIN_TIME_SHARE: f64 = 0.02;
 /// What ended a render that had a stop rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Stopped {
     /// The error is as small as requested.
     #[serde(rename = "error")]
@@ -32,7 +33,7 @@ pub enum Stopped {
 
 impl Stopped {
     /// Returns what ended a render.
-    pub fn new(stop: &Stop, progress: &Progress) -> Self {
+    pub(super) fn new(stop: &Stop, progress: &Progress) -> Self {
         match () {
             () if is_enough(stop, progress.measured.as_ref()) => Self::Noise,
             () if progress.stage.before >= max_each(stop) => Self::Samples,
@@ -83,12 +84,12 @@ impl Clock {
 
 /// Whether noise and blur are small enough, measured with enough samples to say so.
 fn is_enough(stop: &Stop, measured: Option<&Measured>) -> bool {
-    let is_small = |wanted: f64, error: &Measured| error.noise.samples >= stop.least && error.at_most() <= wanted;
+    let is_small = |wanted: f64, error: &Measured| error.noise.samples >= stop.min_samples && error.at_most() <= wanted;
     stop.noise.zip(measured).is_some_and(|(wanted, error)| is_small(wanted, error))
 }
 
 fn max_each(stop: &Stop) -> u32 {
-    stop.most / REPLICATES as u32
+    stop.max_samples / REPLICATES as u32
 }
 
 /// Returns how many samples each replicate takes next after `each`, if there is room and time for them.
@@ -136,7 +137,7 @@ pub fn estimate_samples(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 
     let mut wanted = each.max(FIRST_STAGE).min(max_each(stop));
     if let (Some(goal), Some(measured)) = (stop.noise, &progress.measured) {
         let times = (measured.at_most() / goal).powi(2);
-        let least = (times * f64::from(stage.before)).max(f64::from(stop.least / REPLICATES as u32));
+        let least = (times * f64::from(stage.before)).max(f64::from(stop.min_samples / REPLICATES as u32));
         while f64::from(wanted) < least && wanted < max_each(stop) {
             wanted = wanted.saturating_mul(2).min(max_each(stop));
         }

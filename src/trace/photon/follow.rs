@@ -57,7 +57,7 @@ impl<const N: usize> Photon<'_, N> {
 /// The point where a photon lands, and its path there.
 pub struct PhotonHit<'a, const N: usize, P = Polarized> {
     pub path: &'a Path<N, P>,
-    pub at: &'a Interaction<'a, N>,
+    pub interaction: &'a Interaction<'a, N>,
     pub photon: &'a Photon<'a, N>,
 }
 
@@ -65,7 +65,7 @@ impl<const N: usize, P> PhotonHit<'_, N, P> {
     /// Returns what the light emits along the photon's way.
     pub fn emission(&self, world: &World) -> Lanes<N> {
         let Photon { emitted, light, .. } = *self.photon;
-        world.scene.lights[light].toward(self.at.context.draw, -emitted.ray.direction, emitted.uv())
+        world.scene.lights[light].toward(self.interaction.context.draw, -emitted.ray.direction, emitted.uv())
     }
 
     /// Returns the flux of the photon, lane by lane.
@@ -115,8 +115,8 @@ fn advance<const N: usize, P: Polarization<N>>(
         return;
     }
     let Some(surface_hit) = walker.next_hit(path, draw) else { return };
-    if let Some(through) = walker.straight(path, draw, &surface_hit)
-        && pass_through(walker, path, photon, &surface_hit.point, &through)
+    if let Some(transmitted) = walker.straight(path, draw, &surface_hit)
+        && pass_through(walker, path, photon, &surface_hit.point, &transmitted)
     {
         return;
     }
@@ -141,30 +141,31 @@ fn advance<const N: usize, P: Polarization<N>>(
         }
         path.resampled = false;
     }
-    let at = Interaction::new(world, draw, &path.incident_ray(), &surface_hit, boundary);
-    if scope != Surfaces::Smooth && path.surfaces() == 1 && (path.hidden_vertices > 0 || !at.lobes.is_diffuse()) {
+    let interaction = Interaction::new(world, draw, &path.incident_ray(), &surface_hit, boundary);
+    let lobes = interaction.lobes;
+    if scope != Surfaces::Smooth && path.surfaces() == 1 && (path.hidden_vertices > 0 || !lobes.is_diffuse()) {
         // A path from the camera has to leave the next diffuse surface to reach this one, or to reach a light that a
         // hidden surface keeps from being sampled. It leaves none to sample a light.
         path.diffuse_left = path.diffuse_left.saturating_sub(1);
     }
     // The limits of bounces are those of paths from the camera.
-    let is_allowed = path.surfaces() <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
+    let is_allowed = path.surfaces() <= world.method.max_bounces && !(lobes.is_diffuse() && path.diffuse_left == 0);
     let may_land = scope != Surfaces::Smooth || path.vertices > 1;
-    if at.lobes.is_wide() && is_allowed && may_land && !(path.is_narrow && at.lobes.is_narrow()) {
-        land(walker, &PhotonHit { path, at: &at, photon });
+    if lobes.is_wide() && is_allowed && may_land && !(path.is_narrow && lobes.is_narrow()) {
+        land(walker, &PhotonHit { path, interaction: &interaction, photon });
     }
-    let goes_on = path.surfaces() < world.method.max_bounces;
-    let is_narrow = at.lobes.is_narrow() || (is_first && at.lobes.has_narrow_apart());
+    let continues = path.surfaces() < world.method.max_bounces;
+    let is_narrow = lobes.is_narrow() || (is_first && lobes.has_narrow_apart());
     let separates_narrow = is_target && is_narrow && (scope == Surfaces::Smooth || is_left_to_map);
-    if separates_narrow && goes_on {
+    if separates_narrow && continues {
         let path = Path { key: path.key.child(NARROW_BRANCH), ..*path };
-        scatter(walker, &path, &at.with_lobes(Lobes::NARROW), sampler);
+        scatter(walker, &path, &interaction.with_lobes(Lobes::NARROW), sampler);
     }
-    if scope == Surfaces::Smooth || !at.lobes.is_wide() {
-        scatter_smooth(walker, path, at, sampler);
-    } else if is_allowed && goes_on {
+    if scope == Surfaces::Smooth || !lobes.is_wide() {
+        scatter_smooth(walker, path, interaction, sampler);
+    } else if is_allowed && continues {
         let narrow = if separates_narrow { Lobes::NARROW } else { Lobes::NONE };
-        scatter(walker, path, &at.with_lobes(Lobes::ALL.without(narrow)), sampler);
+        scatter(walker, path, &interaction.with_lobes(Lobes::ALL.without(narrow)), sampler);
     }
 }
 
@@ -176,10 +177,11 @@ fn pass_through<const N: usize, P: Polarization<N>>(
     path: &mut Path<N, P>,
     Photon { draw, sampler, .. }: &Photon<N>,
     point: &SurfacePoint,
-    through: &PassThrough<N, P>,
+    transmitted: &PassThrough<N, P>,
 ) -> bool {
-    let (throughput, key) = (path.throughput.through(through.straight.share()), path.key.child(PASS_THROUGH_BRANCH));
-    let passed_path = Path { throughput, key, polarization: through.polarization, ..path.beyond_surface(point) };
+    let (throughput, key) =
+        (path.throughput.through(transmitted.straight.share()), path.key.child(PASS_THROUGH_BRANCH));
+    let passed_path = Path { throughput, key, polarization: transmitted.polarization, ..path.beyond_surface(point) };
     let all = throughput == path.throughput;
     if all || walker.follows_all(path, draw) {
         *walker.pending.add(|| *path) = passed_path;
@@ -200,23 +202,27 @@ fn pass_through<const N: usize, P: Polarization<N>>(
 fn scatter<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     path: &Path<N, P>,
-    at: &Interaction<N>,
+    interaction: &Interaction<N>,
     sampler: &Sampler,
 ) {
-    let Interaction { material, point, context, flat, .. } = at;
+    let Interaction { material, point, context, flat, .. } = interaction;
     let u = sampler.get_4d(path.key, SCATTER);
     walker.branches.clear();
     if point.shading == point.normal {
         material.scatter(context, [u[0], u[1]], &mut walker.branches);
-        walker.polarize(path, at);
+        walker.polarize(path, interaction);
         let is_reciprocal = material.is_reciprocal();
         let needs_reversal = |branch: &Branch<N>| !is_reciprocal && branch.pdf.is_some();
-        walker.branches.iter_mut().filter(|branch| needs_reversal(branch)).for_each(|branch| reverse_share(at, branch));
+        walker
+            .branches
+            .iter_mut()
+            .filter(|branch| needs_reversal(branch))
+            .for_each(|branch| reverse_share(interaction, branch));
         convert_to_flux(context, walker.branches.iter_mut().filter(|branch| !needs_reversal(branch)));
     } else {
         // With shading normals that depend on the viewer, light may arrive from directions that the material never
         // draws. The material therefore draws only a part of the directions.
-        let material_probability = if at.lobes.is_diffuse() { 0.0 } else { MATERIAL_PROBABILITY };
+        let material_probability = if interaction.lobes.is_diffuse() { 0.0 } else { MATERIAL_PROBABILITY };
         if u[2] < material_probability {
             shading::scatter(material, context, *flat, [u[0], u[1]], &mut walker.branches);
         } else {
@@ -225,7 +231,9 @@ fn scatter<const N: usize, P: Polarization<N>>(
         }
         walker.branches.retain_mut(|branch| {
             let (is_wide, cos) = (branch.pdf.is_some() && !branch.crosses, branch.wi.dot(*flat));
-            let Some(seen) = bsdf_cos_seen_from(at, branch.wi).filter(|_| is_wide && cos > 0.0) else { return false };
+            let Some(seen) = bsdf_cos_seen_from(interaction, branch.wi).filter(|_| is_wide && cos > 0.0) else {
+                return false;
+            };
             let material_pdf = || shading::evaluate(material, context, *flat, branch.wi).map_or(0.0, |(_, pdf)| pdf);
             let material_pdf = if material_probability > 0.0 { material_pdf() } else { 0.0 };
             let pdf = material_probability * material_pdf + (1.0 - material_probability) * cos / PI;
@@ -233,28 +241,30 @@ fn scatter<const N: usize, P: Polarization<N>>(
             branch.pdf = Some(pdf);
             true
         });
-        walker.polarize_forward(path, at);
+        walker.polarize_forward(path, interaction);
     }
     // From the camera, a path has to leave the next surface to reach the first one, by whatever lobe.
     let all_diffuse = path.surfaces() == 1 && path.hidden_vertices == 0;
-    walker.follow(&mut OutgoingPath { all_diffuse, ..OutgoingPath::new(walker.world, path, at) }, sampler);
+    walker.follow(&mut OutgoingPath { all_diffuse, ..OutgoingPath::new(walker.world, path, interaction) }, sampler);
 }
 
 /// Returns the BSDF, times the cosine of arrival, of a photon that the camera sees from its outgoing direction.
-fn bsdf_cos_seen_from<const N: usize>(at: &Interaction<N>, direction: DVec3) -> Option<Lanes<N>> {
-    let viewed = at.viewed_from(direction);
-    shading::evaluate(at.material, &viewed.context, viewed.flat, at.context.wo).map(|(bsdf_cos, _)| bsdf_cos)
+fn bsdf_cos_seen_from<const N: usize>(interaction: &Interaction<N>, direction: DVec3) -> Option<Lanes<N>> {
+    let viewed = interaction.viewed_from(direction);
+    shading::evaluate(interaction.material, &viewed.context, viewed.flat, interaction.context.wo)
+        .map(|(bsdf_cos, _)| bsdf_cos)
 }
 
 /// Replaces the share of a branch by that of the reverse direction: materials need not be reciprocal.
-fn reverse_share<const N: usize>(at: &Interaction<N>, branch: &mut Branch<N>) {
-    let forward = shading::evaluate(at.material, &at.context, at.flat, branch.wi);
-    let (Some((forward, _)), Some(back)) = (forward, bsdf_cos_seen_from(at, branch.wi)) else {
+fn reverse_share<const N: usize>(interaction: &Interaction<N>, branch: &mut Branch<N>) {
+    let forward = shading::evaluate(interaction.material, &interaction.context, interaction.flat, branch.wi);
+    let (Some((forward, _)), Some(back)) = (forward, bsdf_cos_seen_from(interaction, branch.wi)) else {
         branch.share = Lanes::ZERO;
         return;
     };
     // Radiance changes between media, and flux does not.
-    let cosines = (branch.wi.dot(at.flat) / at.context.wo.dot(at.flat)).abs() * branch.eta_scale;
+    let cosines =
+        (branch.wi.dot(interaction.flat) / interaction.context.wo.dot(interaction.flat)).abs() * branch.eta_scale;
     let ratio = |i: usize| if forward[i] == 0.0 { 0.0 } else { back[i] * cosines as f32 / forward[i] };
     branch.share = branch.share * Lanes::from_fn(ratio);
 }
@@ -263,14 +273,14 @@ fn reverse_share<const N: usize>(at: &Interaction<N>, branch: &mut Branch<N>) {
 fn scatter_smooth<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     path: &Path<N, P>,
-    at: Interaction<N>,
+    interaction: Interaction<N>,
     sampler: &Sampler,
 ) {
-    let unbent = shading::unbent_normal(at.point, at.context.wo);
-    let at = at.with_normal(unbent);
-    let Interaction { material, point, context, .. } = &at;
-    let goes_on = at.lobes.has_delta() && context.wo.dot(context.normal) > 0.0;
-    if !goes_on || path.surfaces() >= walker.world.method.max_bounces {
+    let unbent = shading::unbent_normal(interaction.point, interaction.context.wo);
+    let interaction = interaction.with_normal(unbent);
+    let Interaction { material, point, context, .. } = &interaction;
+    let continues = interaction.lobes.has_delta() && context.wo.dot(context.normal) > 0.0;
+    if !continues || path.surfaces() >= walker.world.method.max_bounces {
         return;
     }
     walker.branches.clear();
@@ -280,12 +290,12 @@ fn scatter_smooth<const N: usize, P: Polarization<N>>(
     walker
         .branches
         .retain(|branch| branch.pdf.is_none() && shading::is_reversible(point, branch.wi, back, branch.crosses));
-    walker.polarize(path, &at);
+    walker.polarize(path, &interaction);
     for branch in &mut walker.branches {
         branch.share = branch.share * shading::forward_factor(point, branch.wi, back) as f32;
     }
     convert_to_flux(context, walker.branches.iter_mut());
-    walker.follow(&mut OutgoingPath::new(walker.world, path, &at), sampler);
+    walker.follow(&mut OutgoingPath::new(walker.world, path, &interaction), sampler);
 }
 
 /// Turns shares of radiance that cross a smooth surface into shares of flux.

@@ -85,7 +85,7 @@ pub enum PhotonSpectrum<const N: usize> {
 pub struct GatherPoint<'a, const N: usize, P> {
     pub world: &'a World,
     pub path: &'a Path<N, P>,
-    pub at: &'a Interaction<'a, N>,
+    pub interaction: &'a Interaction<'a, N>,
     /// The dye that the photons excite, if the path follows its light.
     pub excitation: Option<&'a Excitation<N, P>>,
 }
@@ -130,15 +130,21 @@ pub fn gather<const N: usize, P: Polarization<N>>(
     sampler: &Sampler,
     split: bool,
 ) -> Gathered<N> {
-    let GatherPoint { world, path, at, .. } = center;
+    let GatherPoint { world, path, interaction, .. } = center;
     let [u, u_gather, ..] = sampler.get_random_4d(path.key.child(CHOICE_BRANCH), 0);
-    let crosses = at.lobes.is_transmissive();
+    let crosses = interaction.lobes.is_transmissive();
     let has_any = photons.crosses || !crosses;
     let Some(map) = world.method.map().filter(|map| has_any && u_gather < map.chance) else {
         return Gathered { all: center.all([0.0; 3], 0.0), parts: split.then(Vec::new) };
     };
-    let (position, radius) = (at.point.position, kernel.radius * world.scene.camera.pixel_width(path.length));
-    let search = PhotonSearch { center, kernel, is_front: at.flat.dot(at.point.normal) > 0.0, crosses, radius };
+    let (position, radius) = (interaction.point.position, kernel.radius * world.scene.camera.pixel_width(path.length));
+    let search = PhotonSearch {
+        center,
+        kernel,
+        is_front: interaction.flat.dot(interaction.point.normal) > 0.0,
+        crosses,
+        radius,
+    };
     let mut found = GatheredSum { sum: [0.0; 3], parts: split.then(Vec::new), weight: 0.0, drawn: None, u };
     photons.together.visit_near(position, radius, &mut |position, photon| {
         search.add_joint(&mut found, position, photon);
@@ -168,16 +174,16 @@ impl<const N: usize, P: Polarization<N>> GatherPoint<'_, N, P> {
         rgb: [f64; 3],
         parted: bool,
     ) -> Contribution {
-        let Self { world, path, at, excitation } = self;
+        let Self { world, path, interaction, excitation } = self;
         let (light, found, bounces) = (Some(light), FoundBy::Gathered, path.bounces + photon.surfaces);
-        let first = path.first_lobe(world, at, photon.wi, photon.wi.dot(at.flat) < 0.0);
+        let first = path.first_lobe(world, interaction, photon.wi, photon.wi.dot(interaction.flat) < 0.0);
         let dispersed = parted || excitation.is_some_and(|excitation| excitation.parted);
         Contribution { light, found, rgb, polarization_change: 0.0, first, bounces, dispersed }
     }
 
     /// Whether lanes part on the way of the path and of a photon from the direction `wi`.
     fn parted(&self, wi: DVec3) -> bool {
-        self.path.parted || (self.at.is_parting && wi.dot(self.at.flat) < 0.0)
+        self.path.parted || (self.interaction.is_parting && wi.dot(self.interaction.flat) < 0.0)
     }
 }
 
@@ -185,16 +191,20 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
     /// Adds a photon whose lanes have not parted.
     fn add_joint(&self, found: &mut GatheredSum<N>, position: DVec3, photon: &StoredPhoton<JointLanes<N>, P::Stored>) {
         let Self { center, kernel, .. } = self;
-        let GatherPoint { world, path, at, excitation } = center;
+        let GatherPoint { world, path, interaction, excitation } = center;
         let Some(density) = self.density(position, photon) else { return };
-        let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.context, at.flat, photon.wi) else { return };
-        let (draw, parted, payload) = (at.context.draw, center.parted(photon.wi), &photon.payload);
+        let Some((mut bsdf_cos, _)) =
+            shading::evaluate(interaction.material, &interaction.context, interaction.flat, photon.wi)
+        else {
+            return;
+        };
+        let (draw, parted, payload) = (interaction.context.draw, center.parted(photon.wi), &photon.payload);
         let has_heroes = draw.hero_factor(parted).is_some();
         let onto_heroes = |lanes: Lanes<N>| kernel.matching.onto_heroes(draw, lanes);
         let flux = if has_heroes { onto_heroes(payload.flux) } else { payload.flux };
         let read = if has_heroes { Some(P::convert_stored(&photon.polarization, onto_heroes)) } else { None };
         let light = read.as_ref().unwrap_or(&photon.polarization);
-        let joined = path.polarization.join(at, photon.wi, light, &mut bsdf_cos);
+        let joined = path.polarization.join(interaction, photon.wi, light, &mut bsdf_cos);
         let lanes = path.throughput.of(bsdf_cos * flux);
         let received = ReceivedLight { source: payload.light, draw, lanes: &lanes, parted };
         let ReceivedPhoton { rgb, stokes, spectrum } = match excitation {
@@ -205,15 +215,17 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         };
         let contribution = center.contribution(photon, payload.light, rgb, parted);
         let part = PhotonShare { contribution, stokes, spectrum, factor: density };
-        found.add(world, position, part, || path.polarization.change_of_joined(at, photon.wi, light, &joined, lanes));
+        found.add(world, position, part, || {
+            path.polarization.change_of_joined(interaction, photon.wi, light, &joined, lanes)
+        });
     }
 
     /// Adds a photon of one wavelength, whose lanes have parted.
     fn add_single(&self, found: &mut GatheredSum<N>, position: DVec3, photon: &StoredPhoton<SingleLane, P::Stored>) {
         let Self { center, kernel, .. } = self;
-        let GatherPoint { world, path, at, excitation } = center;
+        let GatherPoint { world, path, interaction, excitation } = center;
         let SingleLane { wavelength, light, weight, color } = &photon.payload;
-        let (draw, parted) = (at.context.draw, center.parted(photon.wi));
+        let (draw, parted) = (interaction.context.draw, center.parted(photon.wi));
         let has_heroes = draw.hero_factor(parted).is_some();
         let read = |lanes: Lanes<N>| match has_heroes {
             true => kernel.matching.matching_light(draw, wavelength, lanes, parted),
@@ -224,8 +236,12 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
             return;
         }
         let Some(density) = self.density(position, photon) else { return };
-        let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.context, at.flat, photon.wi) else { return };
-        let joined = path.polarization.join(at, photon.wi, &photon.polarization, &mut bsdf_cos);
+        let Some((mut bsdf_cos, _)) =
+            shading::evaluate(interaction.material, &interaction.context, interaction.flat, photon.wi)
+        else {
+            return;
+        };
+        let joined = path.polarization.join(interaction, photon.wi, &photon.polarization, &mut bsdf_cos);
         let lanes = path.throughput.of(bsdf_cos);
         let seen = read(lanes);
         let ReceivedPhoton { rgb, stokes, spectrum } = match excitation {
@@ -242,13 +258,13 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         let contribution = center.contribution(photon, *light, rgb, true);
         let part = PhotonShare { contribution, stokes, spectrum, factor: density * seen };
         found.add(world, position, part, || {
-            path.polarization.change_of_joined(at, photon.wi, &photon.polarization, &joined, lanes)
+            path.polarization.change_of_joined(interaction, photon.wi, &photon.polarization, &joined, lanes)
         });
     }
 
     /// Returns the weight of a photon per area of the tangent plane at the place, if it counts.
     fn density<T, L>(&self, position: DVec3, photon: &StoredPhoton<T, L>) -> Option<f64> {
-        let GatherPoint { world, path, at, .. } = self.center;
+        let GatherPoint { world, path, interaction, .. } = self.center;
         let within_limit = path.surfaces() + photon.surfaces - 1 <= world.method.max_bounces;
         // Where a path looks for light at light vertices, those account for what surfaces scatter of the photon's
         // light.
@@ -260,17 +276,17 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         {
             return None;
         }
-        let (way, squared_radius) = (position - at.point.position, self.radius * self.radius);
-        let tangential = way - at.flat * way.dot(at.flat);
+        let (way, squared_radius) = (position - interaction.point.position, self.radius * self.radius);
+        let tangential = way - interaction.flat * way.dot(interaction.flat);
         // The Epanechnikov kernel, which integrates to 1 over the disc.
         let kernel = 2.0 * (1.0 - tangential.length_squared() / squared_radius) / (PI * squared_radius);
-        Some(kernel * photon.flat.dot(at.flat).abs())
+        Some(kernel * photon.flat.dot(interaction.flat).abs())
     }
 
     /// Whether a surface continues that of the place. `flat` is its unit normal on the side from which it is reached,
     /// and `is_front` tells whether that is the front.
     fn continues(&self, position: DVec3, flat: DVec3, is_front: bool) -> bool {
-        let Interaction { point, flat: own, .. } = self.center.at;
+        let Interaction { point, flat: own, .. } = self.center.interaction;
         let cos = flat.dot(*own);
         // The far face of a thin body, too, is reached from the other side, but from the front.
         if cos.abs() < MIN_NORMAL_COSINE || (cos < 0.0 && is_front == self.is_front) {
@@ -284,12 +300,12 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
     /// Returns the visible part of the sum, divided by the visible share of the disc, and how much polarization may
     /// change it.
     fn seen_of(&self, found: &mut GatheredSum<N>, sampler: &Sampler) -> ([f64; 3], f64) {
-        let GatherPoint { world, path, at, .. } = self.center;
+        let GatherPoint { world, path, interaction, .. } = self.center;
         let GatheredSum { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;
         let Some(chosen) = chosen else { return (sum, 0.0) };
         let weight_ratio = weight / chosen.weight;
         let mut polarization_change = weight_ratio * chosen.change * world.amount(chosen.rgb);
-        let up = at.point.leave(at.flat);
+        let up = interaction.point.leave(interaction.flat);
         let top = MAX_HEIGHT * self.radius;
         let clearance = world.scene.nearest(&up, 2.0 * top, &|_| true).map_or(top, |hit| 0.5 * hit.intersection.t);
         let (height, from) = (top.min(clearance), up.at(top.min(clearance)));
@@ -300,7 +316,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
             }
             polarization_change = 0.0;
         }
-        let frame = Frame::about(at.flat);
+        let frame = Frame::about(interaction.flat);
         let stretch = (height + MAX_STEP * self.radius) / height;
         let mut drawn = 0;
         while drawn < MAX_POINTS {
@@ -308,7 +324,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
             for u in [[a, b], [c, d]] {
                 drawn += 1;
                 let DVec2 { x, y } = self.radius * sample_kernel(u);
-                let to = at.point.position + frame.to_world(DVec3::new(x, y, 0.0));
+                let to = interaction.point.position + frame.to_world(DVec3::new(x, y, 0.0));
                 if self.sees(from, to, stretch) == Some(true) {
                     let drawn = f64::from(drawn);
                     parts.iter_mut().flatten().for_each(|part| part.factor *= drawn);
@@ -329,7 +345,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
             scene.objects[hit.object as usize].shape.point(&ray, &hit.intersection);
         let is_front = normal.dot(ray.direction) < 0.0;
         let flat = if is_front { normal } else { -normal };
-        let continues = flat.dot(self.center.at.flat) > 0.0 && self.continues(position, flat, is_front);
+        let continues = flat.dot(self.center.interaction.flat) > 0.0 && self.continues(position, flat, is_front);
         Some(continues && scene.material_of(hit.object).lobes().is_wide())
     }
 }

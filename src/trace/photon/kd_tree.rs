@@ -56,8 +56,8 @@ impl<T> KdTree<T> {
             self.visit_leaf(start..end, place, radius, visit);
             return;
         }
-        let (Split { position: at, axis }, middle) = (self.splits[node], start + (end - start) / 2);
-        let signed_distance = place[axis as usize] - at;
+        let (Split { position, axis }, middle) = (self.splits[node], start + (end - start) / 2);
+        let signed_distance = place[axis as usize] - position;
         if signed_distance < radius {
             self.visit(2 * node + 1, start..middle, place, radius, visit);
         }

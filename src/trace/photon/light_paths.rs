@@ -269,19 +269,19 @@ fn light_vertex<const N: usize, P>(
     photon_hit: &PhotonHit<N, P>,
     is_of_photon: bool,
 ) -> Option<LightVertex<N>> {
-    let PhotonHit { path, at, photon } = photon_hit;
-    let Material::Diffuse(diffuse) = at.material else { return None };
-    let leaving = photon_hit.flux(world) * at.context.read(&diffuse.reflectance) * FRAC_1_PI as f32;
+    let PhotonHit { path, interaction, photon } = photon_hit;
+    let Material::Diffuse(diffuse) = interaction.material else { return None };
+    let leaving = photon_hit.flux(world) * interaction.context.read(&diffuse.reflectance) * FRAC_1_PI as f32;
     let came_over_smooth = path.vertices > 1 && path.kind == PathKind::Other;
     let is_left_to_photons = !is_of_photon && world.has_map() && came_over_smooth && photon.is_for_light_pass(world);
-    let usable = holds_vertices(world, at.object, at.point)
+    let usable = holds_vertices(world, interaction.object, interaction.point)
         && !is_left_to_photons
         && !leaving.is_zero()
         && leaving.0.iter().all(|x| x.is_finite());
     // A path from the camera leaves one more diffuse surface to reach the light over smooth ones.
     let diffuse = world.method.diffuse_bounces - path.diffuse_left + 1 + u32::from(is_of_photon);
-    let SurfacePoint { position, error, normal, .. } = *at.point;
-    let (error, flat, light) = (normal.abs().dot(error), at.flat, photon.light);
+    let SurfacePoint { position, error, normal, .. } = *interaction.point;
+    let (error, flat, light) = (normal.abs().dot(error), interaction.flat, photon.light);
     let (surfaces, parted) = (path.surfaces(), path.parted);
     usable.then_some(LightVertex { position, error, flat, leaving, light, surfaces, diffuse, is_of_photon, parted })
 }

@@ -111,17 +111,17 @@ pub fn store_photon<const N: usize, P: Polarization<N>>(
     photon_hit: &PhotonHit<N, P>,
     kept: &mut Vec<(DVec3, PhotonRecord<N, P::Stored>)>,
 ) {
-    let PhotonHit { path, at, photon: Photon { light, .. } } = *photon_hit;
-    let Interaction { context, flat, point, .. } = at;
+    let PhotonHit { path, interaction, photon: Photon { light, .. } } = *photon_hit;
+    let Interaction { context, flat, point, .. } = interaction;
     let flux = photon_hit.flux(world) * (1.0 / context.wo.dot(*flat).abs()) as f32;
     let photon = StoredPhoton {
         wi: context.wo,
         flat: *flat,
         is_front: flat.dot(point.normal) > 0.0,
-        crosses: at.lobes.is_transmissive(),
+        crosses: interaction.lobes.is_transmissive(),
         surfaces: path.surfaces(),
         is_resampled: path.resampled,
-        polarization: path.polarization.to_stored(at),
+        polarization: path.polarization.to_stored(interaction),
         payload: (),
     };
     let (light, response) = (*light, &world.responses[*light]);

@@ -110,7 +110,7 @@ pub fn splat_photon<const N: usize, P: Polarization<N>>(
     splats: &mut Vec<PlacedSplat>,
 ) {
     let world = walker.world;
-    let all: &[SeenThrough] = match world.visibility(photon_hit.at.object) {
+    let all: &[SeenThrough] = match world.visibility(photon_hit.interaction.object) {
         Visibility::Shown => &[SeenThrough::All],
         Visibility::Hidden => &[],
         Visibility::Holdout => &[SeenThrough::Panes],
@@ -120,7 +120,7 @@ pub fn splat_photon<const N: usize, P: Polarization<N>>(
         let Some(connection) = CameraConnection::new(walker, photon_hit, seen_through) else { return };
         connection.push_splats(connection.scattered(), splats);
         if let Some(dyes) = &world.dyes {
-            for (number, dye) in dyes.of_object(&world.scene, photon_hit.at.object).enumerate() {
+            for (number, dye) in dyes.of_object(&world.scene, photon_hit.interaction.object).enumerate() {
                 connection.push_splats(connection.emitted_by_dye(dyes, dye, number), splats);
             }
         }
@@ -134,8 +134,8 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         photon_hit: &'v PhotonHit<'v, N, P>,
         seen_through: SeenThrough,
     ) -> Option<Self> {
-        let PhotonHit { path, at, photon } = photon_hit;
-        let Interaction { flat, point, .. } = at;
+        let PhotonHit { path, interaction, photon } = photon_hit;
+        let Interaction { flat, point, .. } = interaction;
         let world = walker.world;
         let (camera, film) = (&world.scene.camera, world.scene.film);
         let u = if camera.has_lens() { photon.sampler.get_random_4d(path.key, LENS) } else { [0.5; 4] };
@@ -149,7 +149,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
             return None;
         }
         let same_side = projection.direction.dot(*flat) > 0.0;
-        let viewed = at.viewed_from(projection.direction);
+        let viewed = interaction.viewed_from(projection.direction);
         Some(Self { walker, photon_hit, projection, places, same_side, viewed, seen_through })
     }
 
@@ -160,16 +160,16 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         start: impl FnOnce() -> P,
         light: impl FnOnce() -> Lanes<N>,
     ) -> Option<(Lanes<N>, P)> {
-        let PhotonHit { path, at, .. } = self.photon_hit;
-        let ray = at.point.leave(self.projection.direction);
+        let PhotonHit { path, interaction, .. } = self.photon_hit;
+        let ray = interaction.point.leave(self.projection.direction);
         let distance = (self.projection.start - ray.origin).length();
         let world = self.walker.world;
-        let local_medium = at.boundary.sides()[usize::from(!self.same_side)];
+        let local_medium = interaction.boundary.sides()[usize::from(!self.same_side)];
         let inside = match world.hides_objects && world.has_media {
             true => world.seen_media(&ray).inside(&world.scene),
             false => local_medium,
         };
-        let ends = RayEnds { left: path.last_primitive, ..RayEnds::default() };
+        let ends = RayEnds { start: path.last_primitive, ..RayEnds::default() };
         let (occluders, last_occluder) = (Occluders::Seen(self.seen_through), &self.walker.last_occluder);
         let segment = VisibilityTest { ray: &ray, distance, ends, inside, occluders, last_occluder };
         let (arriving, polarization) = segment.arriving_light(world, draw, start, light)?;
@@ -186,7 +186,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
 
     /// Returns the factor from light that leaves the place toward the camera to what the pixels receive.
     fn factor(&self) -> f64 {
-        let Interaction { context, flat, .. } = self.photon_hit.at;
+        let Interaction { context, flat, .. } = self.photon_hit.interaction;
         let cosines = self.projection.direction.dot(*flat).abs() / context.wo.dot(*flat).abs();
         let filter = self.walker.world.scene.camera.filter();
         self.photon_hit.photon.emitted.factor
@@ -198,18 +198,18 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
     /// Returns what the surface scatters toward the camera.
     fn scattered(&self) -> Option<Splat> {
         let Self { photon_hit, viewed, same_side, .. } = self;
-        let PhotonHit { path, at, .. } = photon_hit;
-        let Interaction { context, material, .. } = at;
+        let PhotonHit { path, interaction, .. } = photon_hit;
+        let Interaction { context, material, .. } = interaction;
         let world = self.walker.world;
         let (mut bsdf_cos, _) = shading::evaluate(material, &viewed.context, viewed.flat, context.wo)?;
-        let parted = path.parted || (!same_side && parts_lanes(at.lobes, material, &viewed.context));
+        let parted = path.parted || (!same_side && parts_lanes(interaction.lobes, material, &viewed.context));
         let start = || path.polarization.after_forward_scattering(viewed, context.wo, &mut bsdf_cos);
         let (emission, on_its_way) = self.arriving_light(context.draw, start, || photon_hit.emission(world))?;
-        let polarized = path.polarization.see(at, &viewed.context, &on_its_way, world, &self.camera_ray());
+        let polarized = path.polarization.see(interaction, &viewed.context, &on_its_way, world, &self.camera_ray());
         let arriving = polarized.factor.map_or(bsdf_cos * emission, |factor| bsdf_cos * emission * factor);
         let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
         let white = world.layers.white.as_ref();
-        let lobe = || FirstLobe::scattered(white, material, at.lobes, &viewed.context, context.wo, !same_side);
+        let lobe = || FirstLobe::scattered(white, material, interaction.lobes, &viewed.context, context.wo, !same_side);
         let first = world.layers.separates_lobes.then(lobe);
         let received = ReceivedLight { source: photon_hit.photon.light, draw: context.draw, lanes, parted };
         Some(self.splat(&received, &polarized, parted, first))
@@ -218,28 +218,37 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
     /// Returns what a dye emits toward the camera; `number` counts the dyes of the material.
     fn emitted_by_dye(&self, dyes: &Dyes, dye: usize, number: usize) -> Option<Splat> {
         let Self { photon_hit, viewed, .. } = self;
-        let PhotonHit { path, at, photon } = photon_hit;
+        let PhotonHit { path, interaction, photon } = photon_hit;
         let world = self.walker.world;
         if !self.same_side {
             return None;
         }
-        let (bsdf_cos, _) = shading::evaluate(&dyes.white, &viewed.context, viewed.flat, at.context.wo)?;
+        let (bsdf_cos, _) = shading::evaluate(&dyes.white, &viewed.context, viewed.flat, interaction.context.wo)?;
         let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * photon_hit.emission(world));
         let parted = path.parted;
-        let brightness =
-            dyes.brightness(dye, &ReceivedLight { source: photon.light, draw: at.context.draw, lanes, parted });
+        let brightness = dyes
+            .brightness(dye, &ReceivedLight { source: photon.light, draw: interaction.context.draw, lanes, parted });
         // The dye emits other wavelengths than those of the photon, whose lanes may have parted.
         let draw = &world.method.basis.draw(photon.sampler.get_random_4d(path.key.child(DYE_BRANCH + dye), LENS)[0]);
         let mut shares = Vec::new();
-        at.material.shares_of_dyes(&ScatterContext { draw, ..viewed.context }, Lanes::ONE, &mut shares);
+        interaction.material.shares_of_dyes(&ScatterContext { draw, ..viewed.context }, Lanes::ONE, &mut shares);
         let polarization = path.polarization.for_excitation();
         let mut unpolarized = Lanes::ONE;
         let start = || {
-            polarization.after_forward_scattering(&viewed.as_dye(&dyes.white, draw), at.context.wo, &mut unpolarized)
+            polarization.after_forward_scattering(
+                &viewed.as_dye(&dyes.white, draw),
+                interaction.context.wo,
+                &mut unpolarized,
+            )
         };
         let (arriving, on_its_way) = self.arriving_light(draw, start, || draw.start())?;
-        let polarized =
-            polarization.see(&at.as_dye(&dyes.white, draw), &viewed.context, &on_its_way, world, &self.camera_ray());
+        let polarized = polarization.see(
+            &interaction.as_dye(&dyes.white, draw),
+            &viewed.context,
+            &on_its_way,
+            world,
+            &self.camera_ray(),
+        );
         let arriving =
             polarized.factor.map_or(arriving, |factor| arriving * factor) * shares[number] * brightness as f32;
         let received = ReceivedLight { source: dyes.source(dye), draw, lanes: &arriving, parted: false };

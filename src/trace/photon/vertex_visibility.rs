@@ -81,7 +81,7 @@ fn sees(world: &World, place: &DiffusePlace, vertex: DVec3, last_occluder: &Cell
     let way = vertex - place.point.position;
     let Some(direction) = way.try_normalize() else { return true };
     let ray = Ray { direction: unit(direction), ..place.point.leave(direction) };
-    let ends = RayEnds { left: Some(place.primitive), ..RayEnds::default() };
+    let ends = RayEnds { start: Some(place.primitive), ..RayEnds::default() };
     let is_opaque = |object| !world.is_see_through(object);
     !world.scene.is_occluded_by(&ray, way.length() * LENGTH_FACTOR, ends, last_occluder, &is_opaque)
 }

@@ -25,7 +25,7 @@ const MAX_PIECES: usize = 64;
 const SEED: u64 = 0x6272_6967;
 
 /// What lights a room that the camera sees.
-#[derive(Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RoomLight {
     /// The places where bounces found most light, if any stand out.
     pub places: Option<BrightPlaces>,

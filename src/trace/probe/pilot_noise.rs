@@ -42,6 +42,7 @@ pub fn pilot_noise(world: &World) -> PilotNoise {
 }
 
 /// For some samples of a pixel: the mean of X + Y + Z, the variance of one, and the pixel's cell of the format.
+#[derive(Clone, Copy, Debug)]
 struct PixelNoise {
     mean: f64,
     variance: f64,
@@ -76,11 +77,13 @@ impl Effort {
     }
 
     /// Returns the ratio with the two ways exchanged.
+    #[must_use]
     pub fn inverse(self) -> Self {
         Self { of_pixels: self.of_pixels.recip(), of_whole: self.of_whole.map(f64::recip) }
     }
 
     /// Returns the ratio of this work to another.
+    #[must_use]
     pub fn over(self, other: Self) -> Self {
         let of_whole = self.of_whole.zip(other.of_whole).map(|(own, other)| own / other);
         Self { of_pixels: self.of_pixels / other.of_pixels, of_whole }
@@ -88,6 +91,7 @@ impl Effort {
 }
 
 /// The noise of sampled pixels all over the image.
+#[derive(Clone, Debug)]
 pub struct PilotNoise {
     pixels: Vec<PixelNoise>,
     judges_whole: bool,

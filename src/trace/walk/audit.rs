@@ -41,8 +41,8 @@ impl<'a, const N: usize> Audit<'a, N> {
     }
 
     /// Records that a path has ended, except for what passes through the surface, if anything does.
-    pub fn end<P>(&mut self, path: &Path<N, P>, through: Option<&PassThrough<N, P>>, draw: &Draw<N>) {
-        let share = through.map_or(Lanes::ZERO, |through| through.straight.share());
+    pub fn end<P>(&mut self, path: &Path<N, P>, transmitted: Option<&PassThrough<N, P>>, draw: &Draw<N>) {
+        let share = transmitted.map_or(Lanes::ZERO, |transmitted| transmitted.straight.share());
         let ended = self.weight(path, path.throughput, draw);
         self.close(path.parted, &std::array::from_fn(|i| ended[i] * (1.0 - f64::from(share[i]))));
     }
@@ -62,13 +62,13 @@ impl<'a, const N: usize> Audit<'a, N> {
     pub fn split<P>(
         &mut self,
         path: &Path<N, P>,
-        at: &Interaction<N>,
+        interaction: &Interaction<N>,
         branches: &[Branch<N>],
         straight: Option<&Straight<N>>,
     ) {
-        let (context, draw) = (&at.context, at.context.draw);
+        let (context, draw) = (&interaction.context, interaction.context.draw);
         let received = self.weight(path, path.throughput, draw);
-        let clear = at.material.absorbs_nothing();
+        let clear = interaction.material.absorbs_nothing();
         let (passing_share, parting) = (straight.map_or(Lanes::ZERO, Straight::share), draw.parting());
         let mut absorbed: [f64; N] = std::array::from_fn(|i| 1.0 - f64::from(passing_share[i]));
         let mut parted = [0.0; N];
@@ -77,13 +77,13 @@ impl<'a, const N: usize> Audit<'a, N> {
                 let ratio = context.beyond_of(lane) / context.incident_of(lane);
                 let share = f64::from(branch.share[lane]) * if branch.crosses { ratio * ratio } else { 1.0 };
                 absorbed[lane] -= share;
-                parted[lane] += if branch.crosses && at.is_parting { share } else { 0.0 };
+                parted[lane] += if branch.crosses && interaction.is_parting { share } else { 0.0 };
             }
         }
-        let is_first_parting = at.is_parting && !path.parted;
+        let is_first_parting = interaction.is_parting && !path.parted;
         for lane in 0..N {
             // Where lanes part, those that do not cross hand over to those that do.
-            let hands_over = at.is_parting && parting[lane] == 0.0;
+            let hands_over = interaction.is_parting && parting[lane] == 0.0;
             if clear && !hands_over {
                 absorbed[lane] = 0.0;
             }

@@ -20,7 +20,7 @@ pub struct DyeExcitation<'a, const N: usize, P> {
     pub world: &'a World,
     pub dyes: &'a Dyes,
     pub path: &'a Path<N, P>,
-    pub at: &'a Interaction<'a, N>,
+    pub interaction: &'a Interaction<'a, N>,
     /// Whether the path continues in all ways, or in one of them.
     pub follows_all: bool,
     /// The dye that the path's light excites, if the path has seen one.
@@ -37,12 +37,12 @@ pub struct ExcitedPaths<const N: usize, P> {
 impl<const N: usize, P: Polarization<N>> DyeExcitation<'_, N, P> {
     /// Chooses the ways that are followed.
     pub fn sample_paths(&self, sampler: &Sampler) -> ExcitedPaths<N, P> {
-        let Self { world, dyes, path, at, follows_all, .. } = *self;
+        let Self { world, dyes, path, interaction, follows_all, .. } = *self;
         let [mut u, wavelength, ..] = sampler.get_random_4d(path.key.child(DYE_BRANCH), CHOICE);
-        let weight = path.throughput.weight(at.context.draw.shares(path.parted));
+        let weight = path.throughput.weight(interaction.context.draw.shares(path.parted));
         let (mut paths, mut shares) = (Vec::new(), Vec::new());
-        at.material.shares_of_dyes(&at.context, Lanes::ONE, &mut shares);
-        let surface_dyes = dyes.of_object(&world.scene, at.object);
+        interaction.material.shares_of_dyes(&interaction.context, Lanes::ONE, &mut shares);
+        let surface_dyes = dyes.of_object(&world.scene, interaction.object);
         let chances = dyes.chances(surface_dyes.clone());
         for (number, (dye, share)) in surface_dyes.zip(shares).enumerate() {
             let chance = chances.chance(dye);
@@ -75,8 +75,8 @@ impl<const N: usize, P: Polarization<N>> DyeExcitation<'_, N, P> {
     /// Returns what the sensor receives from a dye that these lanes see. `wavelength` chooses what the lanes behind it
     /// stand for.
     fn excitation(&self, dye: usize, lanes: Lanes<N>, wavelength: f64) -> Excitation<N, P> {
-        let Self { world, dyes, path, at, .. } = *self;
-        let (seen_by, draw) = (at.context.draw, world.method.basis.draw(wavelength));
+        let Self { world, dyes, path, interaction, .. } = *self;
+        let (seen_by, draw) = (interaction.context.draw, world.method.basis.draw(wavelength));
         let (source, parted) = (dyes.source(dye), path.parted);
         match self.excitation {
             None => {

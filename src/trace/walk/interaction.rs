@@ -1,7 +1,7 @@
 //! The interaction of a ray with a surface.
 
 use super::shading;
-use crate::material::{Lobes, Material, ScatterContext};
+use crate::material::{Incoming, Lobes, Material, Scatter, ScatterContext};
 use crate::math::{DVec3, Ray};
 use crate::scene::{Hit, MaterialId};
 use crate::shape::SurfacePoint;
@@ -60,7 +60,7 @@ impl<'a, const N: usize> Interaction<'a, N> {
         let (material, lobes) = (&world.scene.materials[number].material, world.lobes[number]);
         let [flat, normal] = shading::normals_for_lobes(lobes, point, wo);
         let (sides, present) = (boundary.sides(), arriving.present);
-        let mut at = Self {
+        let mut interaction = Self {
             object: hit.object,
             point,
             material,
@@ -70,10 +70,10 @@ impl<'a, const N: usize> Interaction<'a, N> {
             context: context(world, draw, wo, normal, uv, present, sides),
             is_parting: false,
         };
-        at.context.from_inside = point.normal.dot(wo) < 0.0;
-        at.context.is_alone = arriving.parted && present.sum() == 1.0;
-        at.is_parting = parts_lanes(lobes, material, &at.context);
-        at
+        interaction.context.from_inside = point.normal.dot(wo) < 0.0;
+        interaction.context.is_alone = arriving.parted && present.sum() == 1.0;
+        interaction.is_parting = parts_lanes(lobes, material, &interaction.context);
+        interaction
     }
 
     /// Returns the interaction with another normal by which the surface scatters.
@@ -103,6 +103,36 @@ impl<'a, const N: usize> Interaction<'a, N> {
     pub fn as_dye(&self, white: &'a Material<Table>, draw: &'a Draw<N>) -> Self {
         let context = ScatterContext { draw, present: draw.start(), ..self.context };
         Self { material: white, lobes: Lobes::DIFFUSE_REFLECTION, context, is_parting: false, ..*self }
+    }
+
+    /// Whether the surface scatters by another normal than its geometric one.
+    #[inline(always)]
+    pub fn is_smoothed(&self) -> bool {
+        self.flat != self.context.normal
+    }
+
+    /// Returns the part of unpolarized light from a direction that leaves, by the normal by which the surface scatters.
+    pub fn bsdf_value(&self, wi: DVec3) -> Lanes<N> {
+        self.material.evaluate(&self.context, wi).map_or(Lanes::ZERO, |(light, _)| light)
+    }
+
+    /// Returns the direction that the material was evaluated for, if shading normals have folded it to `incoming`.
+    #[inline(always)]
+    pub fn unfolded(&self, incoming: Incoming) -> Option<Incoming> {
+        let is_folded = self.is_smoothed() && (incoming.wi.dot(self.context.normal) < 0.0) != incoming.crosses;
+        is_folded.then(|| Incoming { wi: shading::folded_direction(incoming.wi, self.flat), ..incoming })
+    }
+
+    /// Returns the direction that a shading normal folds to `incoming`, if the material also sends light there
+    /// unfolded.
+    #[inline(always)]
+    pub fn folded_to(&self, incoming: Incoming) -> Option<Incoming> {
+        if !self.is_smoothed() || incoming.single {
+            return None;
+        }
+        let folded = shading::folded_direction(incoming.wi, self.flat);
+        let is_on_side = |wi: DVec3| (wi.dot(self.context.normal) < 0.0) == incoming.crosses;
+        (is_on_side(incoming.wi) && is_on_side(folded)).then_some(Incoming { wi: folded, ..incoming })
     }
 }
 

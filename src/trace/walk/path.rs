@@ -208,34 +208,42 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
     /// Returns the path beyond a surface that it passes through in part. The surface is not counted.
     #[cold]
     #[inline(never)]
-    pub fn transmitted_part(&self, point: &SurfacePoint, through: &PassThrough<N, P>) -> Self {
-        let throughput = self.throughput.through(through.straight.share());
-        let polarization = through.polarization;
+    pub fn transmitted_part(&self, point: &SurfacePoint, transmitted: &PassThrough<N, P>) -> Self {
+        let throughput = self.throughput.through(transmitted.straight.share());
+        let polarization = transmitted.polarization;
         Self { throughput, polarization, vertices: self.vertices - 1, ..self.beyond_surface(point) }
     }
 
     /// Returns the lobe by which the first surface sends light to the camera that the path finds at a surface, in the
     /// direction `wi`, which may lead beyond it. Returns `None` if layers do not need that.
     #[inline]
-    pub fn first_lobe(&self, world: &World, at: &Interaction<N>, wi: DVec3, crosses: bool) -> Option<FirstLobe> {
+    pub fn first_lobe(
+        &self,
+        world: &World,
+        interaction: &Interaction<N>,
+        wi: DVec3,
+        crosses: bool,
+    ) -> Option<FirstLobe> {
         if self.bounces > 0 || !world.layers.separates_lobes {
             return self.first;
         }
-        let Interaction { material, lobes, context, .. } = at;
+        let Interaction { material, lobes, context, .. } = interaction;
         Some(FirstLobe::scattered(world.layers.white.as_ref(), material, *lobes, context, wi, crosses))
     }
 
     /// Returns whether photons carry the direct light that a narrow lobe sends the path, for lights that send photons.
     #[inline]
-    pub fn leaves_narrow_to_photons(&self, world: &World, at: &Interaction<N>) -> bool {
+    pub fn leaves_narrow_to_photons(&self, world: &World, interaction: &Interaction<N>) -> bool {
         let has_landed = self.kind.is_reachable_by_photons() && !self.is_narrow && self.object_set == ObjectSet::All;
-        has_landed && at.lobes.has_narrow_apart() && world.is_photon_target(at.object, at.point.position)
+        has_landed
+            && interaction.lobes.has_narrow_apart()
+            && world.is_photon_target(interaction.object, interaction.point.position)
     }
 
     /// Returns whether photons carry all light that a surface scatters: its narrow lobes then act like smooth surfaces.
     #[inline]
-    pub fn leaves_all_to_photons(&self, world: &World, at: &Interaction<N>) -> bool {
-        at.lobes.is_narrow() && self.leaves_narrow_to_photons(world, at)
+    pub fn leaves_all_to_photons(&self, world: &World, interaction: &Interaction<N>) -> bool {
+        interaction.lobes.is_narrow() && self.leaves_narrow_to_photons(world, interaction)
     }
 
     /// Returns its ray, as it arrives at a surface.

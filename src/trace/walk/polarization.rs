@@ -74,19 +74,31 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
 
     /// Converts the shares of branches to those of the path's light, before branches are chosen, and adds to
     /// `transfers` how the state changes along each of them. Adds nothing if that can wait until one is chosen.
-    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], transfers: &mut Slots<Self::RowTransfer>);
+    fn split(&self, interaction: &Interaction<N>, branches: &mut [Branch<N>], transfers: &mut Slots<Self::RowTransfer>);
 
     /// Becomes the state along a branch, given the state `before`. `split` has computed `transfer` for branches that
     /// are followed back to the lights. It is `None` for those that `after_forward_scattering` follows.
-    fn follow(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, transfer: Option<&Self::RowTransfer>);
+    fn follow(
+        &mut self,
+        before: &Self,
+        interaction: &Interaction<N>,
+        branch: &Branch<N>,
+        transfer: Option<&Self::RowTransfer>,
+    );
 
     /// Returns the state on the way from a surface along the unit vector `wi` to a light or panes. Converts `bsdf_cos`
     /// to that of the path.
-    fn toward_light(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
+    fn toward_light(&self, interaction: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
     /// Returns how much polarization may change light along `wi`, as X + Y + Z. `on_its_way` is by `toward_light` and
     /// panes.
-    fn change_along(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64;
+    fn change_along(
+        &self,
+        interaction: &Interaction<N>,
+        wi: DVec3,
+        on_its_way: &Self,
+        light: &FoundLight<N, Self>,
+    ) -> f64;
 
     /// Returns how much polarization may change light that the path has hit, as X + Y + Z.
     fn change_of_hit(&self, light: &FoundLight<N, Self>) -> f64;
@@ -106,7 +118,7 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// `after_forward_scattering` and panes, and `viewed` is the surface as the camera sees it.
     fn see(
         &self,
-        at: &Interaction<N>,
+        interaction: &Interaction<N>,
         viewed: &ScatterContext<N>,
         on_its_way: &Self,
         world: &World,
@@ -114,15 +126,15 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     ) -> SeenPhoton<N>;
 
     /// Returns what is stored of it where a photon has landed.
-    fn to_stored(&self, at: &Interaction<N>) -> Self::Stored;
+    fn to_stored(&self, interaction: &Interaction<N>) -> Self::Stored;
 
     /// Joins a camera path at a surface with a photon that landed near, along `wi`. Makes `bsdf_cos` that of both.
-    fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Stored, bsdf_cos: &mut Lanes<N>) -> Self;
+    fn join(&self, interaction: &Interaction<N>, wi: DVec3, photon: &Self::Stored, bsdf_cos: &mut Lanes<N>) -> Self;
 
     /// Returns the share by which polarization may change a photon's light, along a unit vector, that `join` joined.
     fn change_of_joined(
         &self,
-        at: &Interaction<N>,
+        interaction: &Interaction<N>,
         wi: DVec3,
         photon: &Self::Stored,
         joined: &Self,

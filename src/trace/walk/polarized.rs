@@ -100,9 +100,9 @@ impl<const N: usize> Polarization<N> for Polarized {
     fn split(&self, _: &Interaction<N>, _: &mut [Branch<N>], _: &mut Slots<()>) {}
 
     #[inline(always)]
-    fn follow(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, _: Option<&()>) {
+    fn follow(&mut self, before: &Self, interaction: &Interaction<N>, branch: &Branch<N>, _: Option<&()>) {
         *self = match branch.pdf {
-            Some(_) => before.after_scattering(at.material, &at.context, branch.wi),
+            Some(_) => before.after_scattering(interaction.material, &interaction.context, branch.wi),
             None => before.after_surface(branch.polarization),
         };
     }
@@ -112,11 +112,17 @@ impl<const N: usize> Polarization<N> for Polarized {
         Self::NONE
     }
 
-    fn change_along(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64 {
+    fn change_along(
+        &self,
+        interaction: &Interaction<N>,
+        wi: DVec3,
+        on_its_way: &Self,
+        light: &FoundLight<N, Self>,
+    ) -> f64 {
         if !self.may_matter() && !light.world.has_see_through() {
             return 0.0;
         }
-        let change = self.joined_at(at.material, &at.context, wi, *on_its_way).change();
+        let change = self.joined_at(interaction.material, &interaction.context, wi, *on_its_way).change();
         if change == 0.0 { 0.0 } else { change * light.world.amount(light.rgb) }
     }
 
@@ -140,13 +146,13 @@ impl<const N: usize> Polarization<N> for Polarized {
 
     fn see(
         &self,
-        at: &Interaction<N>,
+        interaction: &Interaction<N>,
         viewed: &ScatterContext<N>,
         on_its_way: &Self,
         _: &World,
         _: &Ray,
     ) -> SeenPhoton<N> {
-        let change = on_its_way.joined_at(at.material, viewed, at.context.wo, *self).change() as f32;
+        let change = on_its_way.joined_at(interaction.material, viewed, interaction.context.wo, *self).change() as f32;
         SeenPhoton { change: Lanes([change; N]), factor: None, stokes: None }
     }
 
@@ -159,8 +165,8 @@ impl<const N: usize> Polarization<N> for Polarized {
         Self::NONE
     }
 
-    fn change_of_joined(&self, at: &Interaction<N>, wi: DVec3, photon: &Self, _: &Self, _: Lanes<N>) -> f64 {
-        self.joined_at(at.material, &at.context, wi, *photon).change()
+    fn change_of_joined(&self, interaction: &Interaction<N>, wi: DVec3, photon: &Self, _: &Self, _: Lanes<N>) -> f64 {
+        self.joined_at(interaction.material, &interaction.context, wi, *photon).change()
     }
 
     fn convert_stored(photon: &Self, _: impl Fn(Lanes<N>) -> Lanes<N>) -> Self {

@@ -51,11 +51,6 @@ fn inverse(x: f32) -> f32 {
     if x >= f32::MIN_POSITIVE { 1.0 / x } else { 0.0 }
 }
 
-/// Returns the part of unpolarized light from a direction that leaves a surface, by the normal by which it scatters.
-fn bsdf_value<const N: usize>(at: &Interaction<N>, wi: DVec3) -> Lanes<N> {
-    at.material.evaluate(&at.context, wi).map_or(Lanes::ZERO, |(light, _)| light)
-}
-
 impl<const N: usize, const K: usize> Rows<N, K> {
     /// Returns the rows of light that hits no surface before it reaches the sensor, which has image right at `x`.
     fn initial(x: DVec3, compares: bool) -> Self {
@@ -164,9 +159,14 @@ impl<const N: usize, const K: usize> Rows<N, K> {
 
     /// Sets `mueller` to what a surface does to light that leaves it in one way, and returns that way.
     #[inline(always)]
-    fn set_mueller(at: &Interaction<N>, incoming: Incoming, value: Lanes<N>, mueller: &mut Mueller<N>) -> Exitant<N> {
-        at.material.mueller(&at.context, incoming, mueller);
-        Exitant { value, lanes: incoming.lanes, z: [at.context.wo, -incoming.wi] }
+    fn set_mueller(
+        interaction: &Interaction<N>,
+        incoming: Incoming,
+        value: Lanes<N>,
+        mueller: &mut Mueller<N>,
+    ) -> Exitant<N> {
+        interaction.material.mueller(&interaction.context, incoming, mueller);
+        Exitant { value, lanes: incoming.lanes, z: [interaction.context.wo, -incoming.wi] }
     }
 
     /// Becomes the rows beyond a surface that leaves no polarization, with `x` as their frame.
@@ -183,25 +183,6 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         for weights in &mut self.weights {
             weights[2..].iter_mut().flatten().for_each(|weight| *weight *= -1.0);
         }
-    }
-
-    /// Returns the direction that the material was evaluated for, if shading normals have folded it to `incoming`.
-    #[inline(always)]
-    fn unfolded(at: &Interaction<N>, incoming: Incoming) -> Option<Incoming> {
-        let is_folded = at.flat != at.context.normal && (incoming.wi.dot(at.context.normal) < 0.0) != incoming.crosses;
-        is_folded.then(|| Incoming { wi: shading::folded_direction(incoming.wi, at.flat), ..incoming })
-    }
-
-    /// Returns the direction that a shading normal folds to `incoming`, if the material also sends light there
-    /// unfolded.
-    #[inline(always)]
-    fn folded_to(at: &Interaction<N>, incoming: Incoming) -> Option<Incoming> {
-        if at.flat == at.context.normal || incoming.single {
-            return None;
-        }
-        let folded = shading::folded_direction(incoming.wi, at.flat);
-        let is_on_side = |wi: DVec3| (wi.dot(at.context.normal) < 0.0) == incoming.crosses;
-        (is_on_side(incoming.wi) && is_on_side(folded)).then_some(Incoming { wi: folded, ..incoming })
     }
 
     /// Merges rows of light that arrives in the same direction, which is z, in proportion to the light of both.
@@ -223,13 +204,13 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     #[inline(never)]
     fn folded_light(
         &self,
-        at: &Interaction<N>,
+        interaction: &Interaction<N>,
         folded: Incoming,
         [straight, left]: [Lanes<N>; 2],
         share: &mut Lanes<N>,
     ) -> FoldedLight<N> {
-        let (value, mut mueller, mut change) = (bsdf_value(at, folded.wi), Mueller::NONE, Change::NONE);
-        let (exitant, mut light) = (Self::set_mueller(at, folded, value, &mut mueller), value);
+        let (value, mut mueller, mut change) = (interaction.bsdf_value(folded.wi), Mueller::NONE, Change::NONE);
+        let (exitant, mut light) = (Self::set_mueller(interaction, folded, value, &mut mueller), value);
         self.find_change(&mueller, &exitant, &mut change, &mut light);
         if !self.compares {
             *share = Lanes::from_fn(|i| share[i] * (left[i] + light[i]) * inverse(straight[i] + value[i]));
@@ -247,40 +228,52 @@ impl<const N: usize, const K: usize> Rows<N, K> {
 
     /// Returns the rows after a surface, along a direction that shading normals may have folded. Converts `bsdf_cos` to
     /// that of the path.
-    fn after_surface(&self, at: &Interaction<N>, wi: DVec3, value: Option<Lanes<N>>, bsdf_cos: &mut Lanes<N>) -> Self {
+    fn after_surface(
+        &self,
+        interaction: &Interaction<N>,
+        wi: DVec3,
+        value: Option<Lanes<N>>,
+        bsdf_cos: &mut Lanes<N>,
+    ) -> Self {
         let mut after = *self;
-        if let Material::Diffuse(_) = at.material {
+        if let Material::Diffuse(_) = interaction.material {
             after.depolarize(self, perpendicular(wi, self.x));
             return after;
         }
-        let lanes = at.context.present.nonzero();
-        let incoming = Incoming { wi, crosses: wi.dot(at.flat) < 0.0, single: false, lanes };
-        let drawn = Self::unfolded(at, incoming);
+        let lanes = interaction.context.present.nonzero();
+        let incoming = Incoming { wi, crosses: wi.dot(interaction.flat) < 0.0, single: false, lanes };
+        let drawn = interaction.unfolded(incoming);
         let (query, mut mueller) = (drawn.unwrap_or(incoming), Mueller::NONE);
-        let value = value.unwrap_or_else(|| bsdf_value(at, query.wi));
-        let exitant = Self::set_mueller(at, query, value, &mut mueller);
-        if let Some(folded) = Self::folded_to(at, incoming) {
+        let value = value.unwrap_or_else(|| interaction.bsdf_value(query.wi));
+        let exitant = Self::set_mueller(interaction, query, value, &mut mueller);
+        if let Some(folded) = interaction.folded_to(incoming) {
             let mut leaving = value;
             after.pass_surface(&mueller, &exitant, &mut leaving);
-            let folded_light = self.folded_light(at, folded, [value, leaving], bsdf_cos);
-            after.merge_folded(self, &folded_light, -wi, at.flat);
+            let folded_light = self.folded_light(interaction, folded, [value, leaving], bsdf_cos);
+            after.merge_folded(self, &folded_light, -wi, interaction.flat);
             return after;
         }
         after.pass_surface(&mueller, &exitant, bsdf_cos);
         if drawn.is_some() {
-            after.fold(at.flat);
+            after.fold(interaction.flat);
         }
         after
     }
 
     /// Returns the rows of light that is followed forward, beyond a surface that it leaves in one way to the viewer. If
     /// `is_folded`, it is folded before it arrives. Converts `share` from unpolarized light to the path's light.
-    fn sent_forward(&self, at: &Interaction<N>, incoming: Incoming, is_folded: bool, share: &mut Lanes<N>) -> Self {
+    fn sent_forward(
+        &self,
+        interaction: &Interaction<N>,
+        incoming: Incoming,
+        is_folded: bool,
+        share: &mut Lanes<N>,
+    ) -> Self {
         let (mut after, mut mueller) = (*self, Mueller::NONE);
         if is_folded {
-            after.fold(at.flat);
+            after.fold(interaction.flat);
         }
-        let exitant = Self::set_mueller(at, incoming, *share, &mut mueller).reversed();
+        let exitant = Self::set_mueller(interaction, incoming, *share, &mut mueller).reversed();
         mueller.turn_back();
         after.pass_surface(&mueller, &exitant, share);
         after
@@ -361,33 +354,33 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         self
     }
 
-    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], transfers: &mut Slots<RowTransfer<N>>) {
+    fn split(&self, interaction: &Interaction<N>, branches: &mut [Branch<N>], transfers: &mut Slots<RowTransfer<N>>) {
         transfers.clear();
         for branch in branches {
             let transfer = transfers.add(RowTransfer::new);
-            transfer.is_polarized = !matches!(at.material, Material::Diffuse(_));
+            transfer.is_polarized = !matches!(interaction.material, Material::Diffuse(_));
             if !transfer.is_polarized {
                 transfer.change.x = perpendicular(branch.wi, self.x);
                 continue;
             }
-            let incoming = branch.incoming(&at.context.present);
-            let drawn = Self::unfolded(at, incoming);
+            let incoming = branch.incoming(&interaction.context.present);
+            let drawn = interaction.unfolded(incoming);
             let query = drawn.unwrap_or(incoming);
             let value = match branch.pdf {
                 None => branch.share,
                 // Where lanes part, a branch's share is that of its own lanes, and its density that of all lanes.
-                Some(pdf) if at.flat == at.context.normal && !(at.is_parting && branch.crosses) => {
+                Some(pdf) if !(interaction.is_smoothed() || (interaction.is_parting && branch.crosses)) => {
                     branch.share * pdf as f32
                 }
-                Some(_) => bsdf_value(at, query.wi),
+                Some(_) => interaction.bsdf_value(query.wi),
             };
-            let exitant = Self::set_mueller(at, query, value, &mut transfer.mueller);
-            transfer.fold_plane = drawn.map(|_| at.flat);
+            let exitant = Self::set_mueller(interaction, query, value, &mut transfer.mueller);
+            transfer.fold_plane = drawn.map(|_| interaction.flat);
             transfer.folded_light = None;
-            if let Some(folded) = Self::folded_to(at, incoming) {
+            if let Some(folded) = interaction.folded_to(incoming) {
                 let mut leaving = value;
                 self.find_change(&transfer.mueller, &exitant, &mut transfer.change, &mut leaving);
-                let folded_light = self.folded_light(at, folded, [value, leaving], &mut branch.share);
+                let folded_light = self.folded_light(interaction, folded, [value, leaving], &mut branch.share);
                 transfer.folded_light = Some(Box::new(folded_light));
                 continue;
             }
@@ -395,11 +388,18 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         }
     }
 
-    fn follow(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, transfer: Option<&RowTransfer<N>>) {
+    fn follow(
+        &mut self,
+        before: &Self,
+        interaction: &Interaction<N>,
+        branch: &Branch<N>,
+        transfer: Option<&RowTransfer<N>>,
+    ) {
         let Some(RowTransfer { is_polarized, mueller, change, fold_plane, folded_light }) = transfer else {
             // The branch's share is already that of the path's light.
             let mut share = branch.share;
-            *self = before.after_forward_scattering(&at.viewed_from(branch.wi), at.context.wo, &mut share);
+            let reversed = interaction.viewed_from(branch.wi);
+            *self = before.after_forward_scattering(&reversed, interaction.context.wo, &mut share);
             return;
         };
         if !is_polarized {
@@ -410,13 +410,13 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
             self.fold(*flat);
         }
         if let Some(folded_light) = folded_light {
-            self.merge_folded(before, folded_light, -branch.wi, at.flat);
+            self.merge_folded(before, folded_light, -branch.wi, interaction.flat);
         }
     }
 
-    fn toward_light(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
-        let value = if at.flat == at.context.normal { Some(*bsdf_cos) } else { None };
-        self.after_surface(at, wi, value, bsdf_cos)
+    fn toward_light(&self, interaction: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
+        let value = if interaction.is_smoothed() { None } else { Some(*bsdf_cos) };
+        self.after_surface(interaction, wi, value, bsdf_cos)
     }
 
     fn change_along(&self, _: &Interaction<N>, _: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64 {
@@ -447,13 +447,13 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         }
         let lanes = viewed.context.present.nonzero();
         let incoming = Incoming { wi, crosses: wi.dot(viewed.flat) < 0.0, single: false, lanes };
-        let drawn = Self::unfolded(viewed, incoming);
+        let drawn = viewed.unfolded(incoming);
         let query = drawn.unwrap_or(incoming);
-        let value = bsdf_value(viewed, query.wi);
+        let value = viewed.bsdf_value(query.wi);
         let (mut left, mut others) = (value, [Lanes::ZERO; 2]);
         let mut after = self.sent_forward(viewed, query, drawn.is_some(), &mut left);
-        if let Some(folded) = Self::folded_to(viewed, incoming) {
-            others = [bsdf_value(viewed, folded.wi); 2];
+        if let Some(folded) = viewed.folded_to(incoming) {
+            others = [viewed.bsdf_value(folded.wi); 2];
             let other = self.sent_forward(viewed, folded, true, &mut others[1]);
             after.merge(&other, z, &[left, others[1]]);
         }
@@ -470,13 +470,13 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         SeenPhoton { change, factor: Some(factor), stokes: after.stokes() }
     }
 
-    fn to_stored(&self, at: &Interaction<N>) -> Self::Stored {
-        let is_unneeded = matches!(at.material, Material::Diffuse(_)) && !self.compares;
+    fn to_stored(&self, interaction: &Interaction<N>) -> Self::Stored {
+        let is_unneeded = matches!(interaction.material, Material::Diffuse(_)) && !self.compares;
         (!is_unneeded).then(|| Box::new(self.column()))
     }
 
-    fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Stored, bsdf_cos: &mut Lanes<N>) -> Self {
-        let mut after = self.toward_light(at, wi, bsdf_cos);
+    fn join(&self, interaction: &Interaction<N>, wi: DVec3, photon: &Self::Stored, bsdf_cos: &mut Lanes<N>) -> Self {
+        let mut after = self.toward_light(interaction, wi, bsdf_cos);
         if let Some(light) = photon {
             *bsdf_cos = *bsdf_cos * after.receive(-wi, light);
         }

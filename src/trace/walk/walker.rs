@@ -126,23 +126,27 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     }
 
     /// Adds the pending path that passes through a surface, if any light does.
-    pub fn pass_partly(&mut self, path: &Path<N, P>, point: &SurfacePoint, through: Option<&PassThrough<N, P>>) {
-        if let Some(through) = through {
-            *self.pending.add(|| *path) = Path { key: path.key.child(0), ..path.transmitted_part(point, through) };
+    pub fn pass_partly(&mut self, path: &Path<N, P>, point: &SurfacePoint, transmitted: Option<&PassThrough<N, P>>) {
+        if let Some(transmitted) = transmitted {
+            *self.pending.add(|| *path) = Path { key: path.key.child(0), ..path.transmitted_part(point, transmitted) };
         }
     }
 
     /// Converts the shares of the branches to those of the path's light, which may be polarized.
     #[inline(always)]
-    pub fn polarize(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
-        path.polarization.split(at, &mut self.branches, &mut self.transfers);
+    pub fn polarize(&mut self, path: &Path<N, P>, interaction: &Interaction<N>) {
+        path.polarization.split(interaction, &mut self.branches, &mut self.transfers);
     }
 
     /// Polarizes the light of branches that is followed forward, by shading normals that depend on the viewer.
-    pub fn polarize_forward(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
+    pub fn polarize_forward(&mut self, path: &Path<N, P>, interaction: &Interaction<N>) {
         self.transfers.clear();
         for branch in &mut self.branches {
-            path.polarization.after_forward_scattering(&at.viewed_from(branch.wi), at.context.wo, &mut branch.share);
+            path.polarization.after_forward_scattering(
+                &interaction.viewed_from(branch.wi),
+                interaction.context.wo,
+                &mut branch.share,
+            );
         }
     }
 
@@ -156,24 +160,24 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     }
 
     /// Reports the branches and what passes through to the audit, if there is one.
-    pub fn report_to_audit(&mut self, path: &Path<N, P>, at: &Interaction<N>, straight: Option<&Straight<N>>) {
+    pub fn report_to_audit(&mut self, path: &Path<N, P>, interaction: &Interaction<N>, straight: Option<&Straight<N>>) {
         if let Some(audit) = &mut self.audit {
-            audit.split(path, at, &self.branches, straight);
+            audit.split(path, interaction, &self.branches, straight);
         }
     }
 
     /// Decides which branches, and how much of what passes through, are followed. Their paths become pending.
     pub fn follow(&mut self, outgoing: &mut OutgoingPath<N, P>, sampler: &Sampler) {
         let path = outgoing.path;
-        if let Some(through) = &outgoing.through {
-            self.branches.push(Branch::through(&path.ray, &through.straight));
+        if let Some(transmitted) = &outgoing.transmitted {
+            self.branches.push(Branch::through(&path.ray, &transmitted.straight));
         }
         self.stats.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
         outgoing.branches = self.branches.len();
         if outgoing.must_pass
-            && let Some(through) = self.branches.pop()
+            && let Some(straight_branch) = self.branches.pop()
         {
-            outgoing.add_pending(self.branches.len(), &through, None, 1.0, &mut self.pending);
+            outgoing.add_pending(self.branches.len(), &straight_branch, None, 1.0, &mut self.pending);
         }
         match self.current_transport() {
             Transport::Deterministic { cutoff, .. } => {
@@ -185,7 +189,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
                 }
             }
             Transport::Random { roulette, .. } => {
-                if self.branches.len() > 1 && !self.follows_all(path, outgoing.at.context.draw) {
+                if self.branches.len() > 1 && !self.follows_all(path, outgoing.interaction.context.draw) {
                     self.follow_one(outgoing, sampler, roulette)
                 } else {
                     self.follow_many(outgoing, sampler, roulette)
@@ -223,14 +227,15 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
 
     /// Follows all branches that survive roulette.
     fn follow_many(&mut self, outgoing: &OutgoingPath<N, P>, sampler: &Sampler, roulette: f64) {
-        let is_diffuse = outgoing.at.lobes.is_diffuse();
+        let is_diffuse = outgoing.interaction.lobes.is_diffuse();
         let is_seen = outgoing.is_seen && self.world.has_soft_light;
         for (number, branch) in self.branches.iter().enumerate() {
             let u = || sampler.get_random_4d(outgoing.path.key.child(number), CHOICE)[2];
             let (weight, wide) = (outgoing.weight(branch), branch.pdf.is_some() && is_diffuse);
             let roulette = if wide { roulette * DIFFUSE_ROULETTE_FACTOR } else { roulette };
             // In soft light, dark surfaces make pixels as dark as paths. These must be no noisier than bright ones.
-            let roulette_weight = if wide && is_seen { outgoing.path.weight(outgoing.at.context.draw) } else { weight };
+            let roulette_weight =
+                if wide && is_seen { outgoing.path.weight(outgoing.interaction.context.draw) } else { weight };
             if weight != 0.0
                 && let Some(factor) = play_roulette(roulette_weight, roulette, outgoing.path.vertices, u)
             {
@@ -243,7 +248,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     /// keeps the mean.
     fn current_transport(&self) -> Transport {
         match self.transport {
-            Transport::Deterministic { most, .. } if self.surfaces() > most => FALLBACK_TRANSPORT,
+            Transport::Deterministic { max_sample_surfaces: max, .. } if self.surfaces() > max => FALLBACK_TRANSPORT,
             transport => transport,
         }
     }
@@ -260,11 +265,11 @@ pub struct HiddenHit(Boundary);
 pub struct OutgoingPath<'a, const N: usize, P = Polarized> {
     pub world: &'a World,
     pub path: &'a Path<N, P>,
-    pub at: &'a Interaction<'a, N>,
+    pub interaction: &'a Interaction<'a, N>,
     /// Where lights were sampled, if they were.
     pub scatter: Option<&'a ScatterSample>,
     /// What passes through the surface, as the last branch.
-    pub through: Option<&'a PassThrough<N, P>>,
+    pub transmitted: Option<&'a PassThrough<N, P>>,
     /// Whether what passes through is always followed, because the camera ray hits something behind the surface.
     pub must_pass: bool,
     /// Whether the camera sees the surface.
@@ -276,21 +281,31 @@ pub struct OutgoingPath<'a, const N: usize, P = Polarized> {
 }
 
 impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
-    pub fn new(world: &'a World, path: &'a Path<N, P>, at: &'a Interaction<'a, N>) -> Self {
-        let (scatter, through) = (None, None);
-        Self { world, path, at, scatter, through, must_pass: false, is_seen: false, all_diffuse: false, branches: 0 }
+    pub fn new(world: &'a World, path: &'a Path<N, P>, interaction: &'a Interaction<'a, N>) -> Self {
+        let (scatter, transmitted) = (None, None);
+        Self {
+            world,
+            path,
+            interaction,
+            scatter,
+            transmitted,
+            must_pass: false,
+            is_seen: false,
+            all_diffuse: false,
+            branches: 0,
+        }
     }
 
     /// Returns how many paths together stand for this one.
     fn siblings(&self) -> f64 {
-        self.at.context.draw.siblings(self.path.parted)
+        self.interaction.context.draw.siblings(self.path.parted)
     }
 
     /// Returns the weight of the path along a branch.
     #[inline]
     fn weight(&self, branch: &Branch<N>) -> f64 {
-        let Self { path, at, .. } = self;
-        let shares = at.context.draw.shares(path.parted || (at.is_parting && branch.crosses));
+        let Self { path, interaction, .. } = self;
+        let shares = interaction.context.draw.shares(path.parted || (interaction.is_parting && branch.crosses));
         path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
     }
 
@@ -312,26 +327,26 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         factor: f64,
         pending: &mut Slots<Path<N, P>>,
     ) {
-        let Self { world, path, at, .. } = self;
-        if let Some(through) = self.through.filter(|_| number + 1 == self.branches) {
-            let passed_path = path.transmitted_part(at.point, through);
+        let Self { world, path, interaction, .. } = self;
+        if let Some(transmitted) = self.transmitted.filter(|_| number + 1 == self.branches) {
+            let passed_path = path.transmitted_part(interaction.point, transmitted);
             let (throughput, key) = (passed_path.throughput.scaled(factor), path.key.child(number));
             *pending.add(|| passed_path) = Path { throughput, key, ..passed_path };
             return;
         }
         let (wide, crosses) = (branch.pdf.is_some(), branch.crosses);
-        let reversible = || shading::is_reversible(at.point, at.context.wo, branch.wi, crosses);
-        let left_to_photons = wide && path.leaves_narrow_to_photons(world, at);
-        let counts_as_smooth = left_to_photons && at.lobes.is_narrow();
+        let reversible = || shading::is_reversible(interaction.point, interaction.context.wo, branch.wi, crosses);
+        let left_to_photons = wide && path.leaves_narrow_to_photons(world, interaction);
+        let counts_as_smooth = left_to_photons && interaction.lobes.is_narrow();
         // A photon that leaves by the lobe that is left to photons has hit only smooth surfaces so far.
-        let counts_as_wide = wide && at.context.lobes != Lobes::NARROW;
+        let counts_as_wide = wide && interaction.context.lobes != Lobes::NARROW;
         let next = pending.add(|| **path);
-        next.ray = at.point.leave(branch.wi);
+        next.ray = interaction.point.leave(branch.wi);
         next.last_primitive = path.last_primitive;
         next.throughput = path.throughput.through(branch.share).scaled(factor);
         (next.eta_scale, next.aiming_factor) = (path.eta_scale * branch.eta_scale, self.aiming_factor(branch));
-        next.media = if crosses { path.media.after_crossing(&at.boundary) } else { path.media };
-        next.parted = path.parted || (at.is_parting && crosses);
+        next.media = if crosses { path.media.after_crossing(&interaction.boundary) } else { path.media };
+        next.parted = path.parted || (interaction.is_parting && crosses);
         next.key = path.key.child(number);
         (next.vertices, next.hidden_vertices) = (path.vertices, path.hidden_vertices);
         next.length = path.length;
@@ -341,24 +356,26 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         };
         next.left_to_photons = match wide {
             true => left_to_photons,
-            false => next.kind == PathKind::Smooth && world.is_photon_target(at.object, at.point.position),
+            false => {
+                next.kind == PathKind::Smooth && world.is_photon_target(interaction.object, interaction.point.position)
+            }
         };
         next.is_narrow = match wide && !counts_as_smooth {
-            true => at.lobes.intersection(at.context.lobes).is_narrow(),
+            true => interaction.lobes.intersection(interaction.context.lobes).is_narrow(),
             false => path.is_narrow,
         };
-        next.diffuse_left = path.diffuse_left - u32::from((wide || self.all_diffuse) && at.lobes.is_diffuse());
+        next.diffuse_left = path.diffuse_left - u32::from((wide || self.all_diffuse) && interaction.lobes.is_diffuse());
         next.scatter = branch.pdf.and_then(|pdf| self.scatter.map(|scatter| scatter.with_pdf(pdf, crosses)));
-        next.polarization.follow(&path.polarization, at, branch, transfer);
+        next.polarization.follow(&path.polarization, interaction, branch, transfer);
         next.bounces = path.bounces + 1;
-        next.is_seen = path.is_seen && !wide && !at.lobes.is_wide();
+        next.is_seen = path.is_seen && !wide && !interaction.lobes.is_wide();
         next.object_set = path.object_set;
         next.resampled = path.resampled;
         next.ignores_light = path.ignores_light;
         next.excitation = path.excitation;
         next.first = match path.bounces {
             0 if !wide && !crosses && world.layers.separates_lobes => Some(FirstLobe::Specular),
-            _ => path.first_lobe(world, at, branch.wi, crosses),
+            _ => path.first_lobe(world, interaction, branch.wi, crosses),
         };
     }
 }
