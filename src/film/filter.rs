@@ -138,6 +138,15 @@ impl Filter {
         }
     }
 
+    /// Returns whether some point within a distance of an offset from the center of a pixel may have a value.
+    pub fn reaches(self, offset: DVec2, distance: f64) -> bool {
+        let shortest = match self {
+            Self::Gaussian { .. } => offset.length(),
+            _ => offset.abs().max_element(),
+        };
+        shortest - distance <= self.reach()
+    }
+
     /// Returns the filter's name in a scene file.
     pub fn name(self) -> &'static str {
         match self {

@@ -5,6 +5,7 @@
 
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_1_PI, TAU};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +60,13 @@ impl Highlight {
         })
     }
 
+    /// Returns the longest half axis of the ellipse, in pixels.
+    pub(super) fn longest_half_axis(&self) -> f64 {
+        // A linear map of the plane is a sum of two: one turns and scales, the other does so after a reflection.
+        let [x, y] = self.radii.map(DVec2::from);
+        0.5 * ((x - y.perp()).length() + (x + y.perp()).length())
+    }
+
     /// Returns whether a point of the film lies in the ellipse.
     pub(super) fn contains(&self, film: DVec2) -> bool {
         self.density(film).is_some()
@@ -94,35 +102,46 @@ const POINTS_PER_SIDE: usize = 2;
 /// has none of its points.
 const NEIGHBOR_SHARE: f64 = 0.25;
 
+/// Most samples that are aimed at the highlights of a pixel with each camera sample.
+const MAX_AIMED: f64 = 4.0;
+/// Points on the rim of an ellipse that tell whether a pixel sees all of it alike.
+const RIM_POINTS: u32 = 16;
+/// Least value of the filter on such an ellipse, relative to the largest.
+const MIN_RATIO: f64 = 0.5;
+
 /// What a pixel sees of a highlight: samples are drawn only there.
 #[derive(Clone, Debug)]
 pub(super) struct SeenHighlight {
-    highlight: Highlight,
-    cells: Distribution2d,
+    highlight: Arc<Highlight>,
+    /// How samples are spread over the cells of the ellipse; `None` if the pixel sees all of it nearly alike.
+    cells: Option<Box<Distribution2d>>,
+    /// The mean value of the pixel's filter.
+    value: f64,
+    /// The mean number of samples that come with each camera sample, at most 1.
+    count: f64,
 }
 
 impl SeenHighlight {
     /// Returns `None` where the pixel sees nothing of the highlight.
-    fn new(highlight: &Highlight, filter: Filter, pixel: [i32; 2]) -> Option<Self> {
-        let at = |cell: [usize; 2], point: usize| -> [f64; 2] {
-            let within =
-                [point % POINTS_PER_SIDE, point / POINTS_PER_SIDE].map(|i| (i as f64 + 0.5) / POINTS_PER_SIDE as f64);
-            [0, 1].map(|i| (cell[i] as f64 + within[i]) / CELL_COUNTS[i] as f64)
+    fn new(highlight: &Arc<Highlight>, filter: Filter, pixel: [i32; 2]) -> Option<Self> {
+        if !filter.reaches(offset(highlight.center.into(), pixel), highlight.longest_half_axis()) {
+            return None;
+        }
+        let (highlight, count) = (Arc::clone(highlight), 1.0);
+        let of_rim = |i: u32| {
+            // The points are the corners of a polygon around the ellipse.
+            let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(RIM_POINTS));
+            let corner = DVec2::new(cos, sin) / libm::cos(0.5 * TAU / f64::from(RIM_POINTS));
+            filter.value(offset(DVec2::from(highlight.center) + highlight.map() * corner, pixel))
         };
-        let value = |cell, point| filter.value(offset(highlight.point(at(cell, point)), pixel)).abs();
-        let points = 0..POINTS_PER_SIDE * POINTS_PER_SIDE;
-        let [columns, rows] = CELL_COUNTS;
-        let sum = |i: usize| points.clone().map(|point| value([i % columns, i / columns], point)).sum();
-        let sums: Vec<f64> = (0..columns * rows).map(sum).collect();
-        let weight = |[x, y]: [usize; 2]| {
-            let near_columns = x.saturating_sub(1)..=(x + 1).min(columns - 1);
-            // The rows go around the center.
-            let near_rows = [rows - 1, 0, 1].map(|step| (y + step) % rows);
-            let near = near_columns.flat_map(|x| near_rows.map(|y| sums[x + y * columns]));
-            sums[x + y * columns] + NEIGHBOR_SHARE * near.fold(0.0, f64::max)
-        };
-        let cells = Distribution2d::new(CELL_COUNTS, weight, |_| 1.0);
-        (cells.total() > 0.0).then(|| Self { highlight: highlight.clone(), cells })
+        let center = filter.value(offset(highlight.center.into(), pixel));
+        let [least, most] = (0..RIM_POINTS).map(of_rim).fold([center; 2], |[a, b], x| [a.min(x), b.max(x)]);
+        if least > MIN_RATIO * most || most < MIN_RATIO * least {
+            return Some(Self { highlight, cells: None, value: center.abs(), count });
+        }
+        let cells = seen_cells(&highlight, filter, pixel);
+        let value = cells.total() / (CELL_COUNTS[0] * CELL_COUNTS[1]) as f64;
+        (value > 0.0).then(|| Self { highlight, cells: Some(Box::new(cells)), value, count })
     }
 
     /// Returns whether it may show light of a source that surfaces sent on `bounces` times.
@@ -132,13 +151,48 @@ impl SeenHighlight {
 
     /// Samples a point of the film, in pixels.
     pub fn sample(&self, u: [f64; 2]) -> DVec2 {
-        self.highlight.point(self.cells.sample_point(u))
+        self.highlight.point(self.cells.as_ref().map_or(u, |cells| cells.sample_point(u)))
     }
 
-    /// Returns the density of samples at a point of the film, per square pixel.
-    fn pdf(&self, film: DVec2) -> f64 {
-        self.highlight.density(film).map_or(0.0, |Density { pdf, u }| pdf * self.cells.density(u))
+    /// Returns the mean density of the samples that come with a camera sample at a point of the film, per square pixel.
+    fn density(&self, film: DVec2) -> f64 {
+        let of_cell = |u| self.cells.as_ref().map_or(1.0, |cells| cells.density(u));
+        self.highlight.density(film).map_or(0.0, |Density { pdf, u }| self.count * pdf * of_cell(u))
     }
+}
+
+/// Returns how much a pixel sees of the cells of a highlight, on the average of a cell.
+fn seen_cells(highlight: &Highlight, filter: Filter, pixel: [i32; 2]) -> Distribution2d {
+    let at = |cell: [usize; 2], point: usize| -> [f64; 2] {
+        let within =
+            [point % POINTS_PER_SIDE, point / POINTS_PER_SIDE].map(|i| (i as f64 + 0.5) / POINTS_PER_SIDE as f64);
+        [0, 1].map(|i| (cell[i] as f64 + within[i]) / CELL_COUNTS[i] as f64)
+    };
+    let value = |cell, point| filter.value(offset(highlight.point(at(cell, point)), pixel)).abs();
+    let points = POINTS_PER_SIDE * POINTS_PER_SIDE;
+    let [columns, rows] = CELL_COUNTS;
+    let mean =
+        |i: usize| (0..points).map(|point| value([i % columns, i / columns], point)).sum::<f64>() / points as f64;
+    let means: Vec<f64> = (0..columns * rows).map(mean).collect();
+    let weight = |[x, y]: [usize; 2]| {
+        let near_columns = x.saturating_sub(1)..=(x + 1).min(columns - 1);
+        // The rows go around the center.
+        let near_rows = [rows - 1, 0, 1].map(|step| (y + step) % rows);
+        let near = near_columns.flat_map(|x| near_rows.map(|y| means[x + y * columns]));
+        means[x + y * columns] + NEIGHBOR_SHARE * near.fold(0.0, f64::max)
+    };
+    Distribution2d::new(CELL_COUNTS, weight, |_| 1.0)
+}
+
+/// Returns those of a pixel's highlights at which a camera sample aims, given a random number. Each is chosen as often
+/// as its mean number of samples says.
+pub(super) fn chosen(highlights: &[SeenHighlight], u: f64) -> impl Iterator<Item = &SeenHighlight> {
+    let mut sum = u;
+    highlights.iter().filter(move |highlight| {
+        let before = sum;
+        sum += highlight.count;
+        sum.floor() > before.floor()
+    })
 }
 
 /// Returns the offset of a point of the film from the middle of a pixel.
@@ -155,11 +209,16 @@ impl Highlights {
         let mut of_pixel: HashMap<[i32; 2], Vec<SeenHighlight>> = HashMap::new();
         for highlight in highlights {
             let [[left, top], [right, bottom]] = highlight.pixels(filter);
+            let highlight = Arc::new(highlight.clone());
             for pixel in (top..=bottom).flat_map(|y| (left..=right).map(move |x| [x, y])) {
-                if let Some(seen) = SeenHighlight::new(highlight, filter, pixel) {
+                if let Some(seen) = SeenHighlight::new(&highlight, filter, pixel) {
                     of_pixel.entry(pixel).or_default().push(seen);
                 }
             }
+        }
+        for seen in of_pixel.values_mut().filter(|seen| seen.len() as f64 > MAX_AIMED) {
+            let all: f64 = seen.iter().map(|highlight| highlight.value).sum();
+            seen.iter_mut().for_each(|highlight| highlight.count = (MAX_AIMED * highlight.value / all).min(1.0));
         }
         Self(of_pixel)
     }
@@ -203,7 +262,7 @@ impl<'a> Counted<'a> {
         aim: &SeenHighlight,
         highlights: &[SeenHighlight],
     ) -> Option<Self> {
-        let Highlight { light, bounces, .. } = aim.highlight;
+        let Highlight { light, bounces, .. } = *aim.highlight;
         let value = filter.value(offset);
         let factor = value / (density(filter, offset) + density_of(highlights, light, bounces, film));
         (value != 0.0).then_some(Self::Aimed { light, bounces, factor })
@@ -235,8 +294,8 @@ fn density(filter: Filter, offset: DVec2) -> f64 {
     filter.value(offset).abs() / filter.absolute_integral()
 }
 
-/// Returns the density of the samples that are aimed at highlights of a light after so many bounces, one at each, per
-/// square pixel.
+/// Returns the mean density of the samples that come with a camera sample and are aimed at highlights of a light after
+/// so many bounces, per square pixel.
 fn density_of(highlights: &[SeenHighlight], light: LightId, bounces: u32, film: DVec2) -> f64 {
-    highlights.iter().filter(|highlight| highlight.shows(light, bounces)).map(|highlight| highlight.pdf(film)).sum()
+    highlights.iter().filter(|highlight| highlight.shows(light, bounces)).map(|highlight| highlight.density(film)).sum()
 }

@@ -48,6 +48,8 @@ const MAX_HALF_AXIS: f64 = 16.0;
 const MARGINS: [f64; 11] = [1.0003, 1.001, 1.003, 1.006, 1.012, 1.025, 1.05, 1.1, 1.2, 1.4, 1.8];
 /// Points on the rim of an ellipse where that is looked at.
 const RIM_POINTS: u32 = 16;
+/// Radii of the rings on which points are looked at if something occludes the center of an image, relative to its own.
+const RINGS: [f64; 2] = [0.5, 0.9];
 /// Half width of the ellipse of a rough surface's highlight, in widths of its slopes. With this half width W, a
 /// share of 1 / (1 + W^2) of the light lies beyond.
 const ROUGH_HALF_WIDTH: f64 = 6.0;
@@ -252,10 +254,7 @@ impl<'a> Search<'a> {
 
     /// Follows the image of a light from a point of the film to its center. Returns the highlight there if it is small.
     fn follow(&self, start: DVec2, near: &ChainEnd, light: &SmallLight) -> Option<Highlight> {
-        let trace = |film: DVec2| {
-            self.rays.set(self.rays.get() + 1);
-            self.chain.trace(film).filter(|end| end.objects == near.objects)
-        };
+        let trace = |film: DVec2| self.trace_like(film, near);
         let (mut film, mut end) = (start, trace(start)?);
         for _ in 0..MAX_NEWTON_STEPS {
             let Mismatch { target, difference } = light.mismatch(&end);
@@ -285,6 +284,12 @@ impl<'a> Search<'a> {
         None
     }
 
+    /// Follows the ray of a point of the film; `None` if other things become of it than of another.
+    fn trace_like(&self, film: DVec2, other: &ChainEnd) -> Option<ChainEnd> {
+        self.rays.set(self.rays.get() + 1);
+        self.chain.trace(film).filter(|end| end.objects == other.objects)
+    }
+
     /// Returns the half width of a highlight, as a difference of the vectors that [`SmallLight::mismatch`] compares.
     fn width(&self, end: &ChainEnd, light: &SmallLight) -> f64 {
         let ApparentLight { sin, .. } = light.seen_from(end.point.position);
@@ -298,50 +303,66 @@ impl<'a> Search<'a> {
     fn margin(&self, film: DVec2, center: &ChainEnd, light: &SmallLight, radii: DMat2) -> f64 {
         let is_lit = |end: ChainEnd| {
             let ApparentLight { sin, .. } = light.seen_from(end.point.position);
-            end.objects == center.objects && light.mismatch(&end).difference.length() < sin
+            light.mismatch(&end).difference.length() < sin
         };
         let contains_image = |margin: &&f64| {
-            (0..RIM_POINTS).all(|i| {
-                let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(RIM_POINTS));
-                !self.chain.trace(film + radii * (DVec2::new(cos, sin) * **margin)).is_some_and(is_lit)
-            })
+            rim().all(|point| !self.trace_like(film + radii * (point * **margin), center).is_some_and(is_lit))
         };
         *MARGINS.iter().find(contains_image).unwrap_or(&MARGINS[MARGINS.len() - 1])
     }
 
-    /// Returns the highlight at a point of the film, if it is small and its light is not occluded. `inverse_jacobian`
+    /// Returns whether the center of a highlight shows its light, or other points of it do. `radii` are those of the
+    /// light's image around a point of the film.
+    fn is_unoccluded(&self, film: DVec2, center: &ChainEnd, light: &SmallLight, radii: DMat2) -> bool {
+        let world = self.chain.world;
+        let is_from_camera = self.chain.bounces() == 0;
+        let counts = |object| !world.is_see_through(object) && (!is_from_camera || world.scene.is_seen(object));
+        let ends = RayEnds { light: light.object, ..RayEnds::default() };
+        let shows_light = |end: &ChainEnd| {
+            let ApparentLight { direction, distance, .. } = light.seen_from(end.point.position);
+            let ray = end.point.leave(if end.slopes == 0.0 { end.outgoing } else { direction });
+            !world.scene.is_occluded_by(&ray, distance, ends, &Cell::new(None), &counts)
+        };
+        let rings = RINGS.into_iter().flat_map(|ring| rim().map(move |point| point * ring));
+        let mut others = rings.filter_map(|point| self.trace_like(film + radii * point, center));
+        shows_light(center) || others.any(|end| shows_light(&end))
+    }
+
+    /// Returns the highlight at a point of the film, if it is small and shows its light. `inverse_jacobian`
     /// is the change of the place on the film with the difference of the vectors that are compared.
     fn highlight(&self, film: DVec2, end: &ChainEnd, light: &SmallLight, inverse_jacobian: DMat2) -> Option<Highlight> {
-        let ApparentLight { direction, sin, distance } = light.seen_from(end.point.position);
+        let ApparentLight { direction, sin, .. } = light.seen_from(end.point.position);
         let width = self.width(end, light);
         let is_small = PI * width * width * inverse_jacobian.determinant().abs() < MAX_AREA;
         let is_on_that_side = direction.dot(end.normal) * end.outgoing.dot(end.normal) > 0.0;
         if width == 0.0 || sin >= MAX_HALF_ANGLE || !is_small || !is_on_that_side {
             return None;
         }
-        let world = self.chain.world;
-        let is_from_camera = self.chain.bounces() == 0;
-        let counts = |object| !world.is_see_through(object) && (!is_from_camera || world.scene.is_seen(object));
-        let ends = RayEnds { light: light.object, ..RayEnds::default() };
-        let ray = end.point.leave(direction);
-        if world.scene.is_occluded_by(&ray, distance, ends, &Cell::new(None), &counts) {
+        let image = inverse_jacobian * width;
+        if !self.is_unoccluded(film, end, light, image) {
             return None;
         }
         let (reach, peak) = match end.slopes {
-            0.0 => (self.margin(film, end, light, inverse_jacobian * width), 0.0),
+            0.0 => (self.margin(film, end, light, image), 0.0),
             _ => (ROUGH_HALF_WIDTH, ROUGH_HALF_WIDTH * ROUGH_HALF_WIDTH),
         };
-        let radii = inverse_jacobian * (reach * width);
-        let longest =
-            0.5 * (radii.x_axis + radii.y_axis.perp()).length() + 0.5 * (radii.x_axis - radii.y_axis.perp()).length();
-        (longest < MAX_HALF_AXIS).then(|| Highlight {
+        let highlight = Highlight {
             light: light.id,
             bounces: self.chain.bounces(),
             center: film.to_array(),
-            radii: radii.to_cols_array_2d(),
+            radii: (image * reach).to_cols_array_2d(),
             peak,
-        })
+        };
+        (highlight.longest_half_axis() < MAX_HALF_AXIS).then_some(highlight)
     }
+}
+
+/// Returns points around the unit circle.
+fn rim() -> impl Iterator<Item = DVec2> {
+    (0..RIM_POINTS).map(|i| {
+        let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(RIM_POINTS));
+        DVec2::new(cos, sin)
+    })
 }
 
 /// Whether two searches ended at the same highlight.
@@ -385,9 +406,10 @@ mod tests {
             (lights.iter().map(of_light).collect::<Vec<_>>(), search.rays.get())
         };
         let (all, rays) = search(RAYS_OF_A_LOOK);
-        assert!(all == [9, 9] && rays < RAYS_OF_A_LOOK / 100, "{all:?}, {rays} rays");
-        // A start takes three rays for each step of Newton's method, and one for each halved step.
-        let most_of_a_start = (MAX_NEWTON_STEPS * (2 + MAX_HALVINGS)) as u64;
+        assert!(all == [9, 9] && rays < RAYS_OF_A_LOOK / 50, "{all:?}, {rays} rays");
+        // A start takes two rays for each step of Newton's method and one for each halved step, and looks at rings.
+        let of_steps = MAX_NEWTON_STEPS * (2 + MAX_HALVINGS);
+        let most_of_a_start = (of_steps + RIM_POINTS as usize * (RINGS.len() + MARGINS.len())) as u64;
         let (some, rays) = search(100);
         assert!(some.iter().all(|count| (1..9).contains(count)), "{some:?}");
         assert!(rays < 100 + 2 * most_of_a_start, "{rays} rays");
