@@ -225,6 +225,59 @@ fn small_lights_in_view_have_all_their_light_wherever_they_are_and_behind_panes(
     }
 }
 
+/// Returns a lamp of a color, seen in a parallel view.
+fn lamp_in_view(name: &str, [x, y]: [f64; 2], radius: f64) -> String {
+    format!(
+        "[[object]]\nshape.sphere = {{ center = [{x}, {y}, 1], radius = {radius} }}\nmaterial = \"{name}\"\n\
+         [material.{name}]\nemissive.radiance = {{ rgb = [1, 2, 0.5], scale = 2000 }}\n"
+    )
+}
+
+#[test]
+fn lights_are_seen_in_part_if_their_center_is_hidden() {
+    let radius: f64 = 0.003;
+    // A screen hides all that is left of an edge.
+    for share in [0.2, 0.7] {
+        let edge = 0.63 + share * radius;
+        let screen = format!(
+            "[[object]]\nmaterial = \"ball\"\nshape.quad = {{ center = [{}, 0.31, 2], u = [0.1, 0, 0], v = [0, 0.1, 0] }}\n",
+            edge - 0.1
+        );
+        let text = view("", "diffuse.reflectance = 0", "") + &lamp_in_view("lamp", [0.63, 0.31], radius) + &screen;
+        let (method, mean) = films(&text, 0..64);
+        assert_eq!(method.highlights.len(), 1, "{share}");
+        // The segment of a circle beyond a chord.
+        let segment = radius * radius * (share.acos() - share * (1.0 - share * share).sqrt());
+        let expected = [1.0, 2.0, 0.5].map(|color| 2000.0 * color * segment / (HEIGHT * HEIGHT));
+        mean.assert_near(expected, 6, &format!("{share} of the radius"));
+        assert!(mean.worst_relative_error(expected) < 0.03, "{share}: {mean:?}");
+    }
+}
+
+/// A sample aims at four highlights of a pixel at most.
+#[test]
+fn pixels_with_many_highlights_show_all_of_them() {
+    for filter in ["box", "gaussian"] {
+        let radii = (0..9).map(|i| 0.002 + 0.0005 * f64::from(i));
+        let lamps = radii.clone().enumerate().map(|(i, radius)| {
+            lamp_in_view(&format!("lamp{i}"), [0.53 + 0.02 * (i % 3) as f64, 0.53 + 0.02 * (i / 3) as f64], radius)
+        });
+        let film = format!(", filter = \"{filter}\"");
+        let text = view(&film, "diffuse.reflectance = 0", "") + &lamps.collect::<String>();
+        let (method, mean) = films(&text, 0..64);
+        assert_eq!(method.highlights.len(), 9);
+        let shape = scene(&text).film.filter;
+        let middle = |i: u32| DVec2::new(f64::from(i % SIDE), f64::from(i / SIDE)) + 0.5;
+        let sum_at = |film: DVec2| (0..SIDE * SIDE).map(|i| shape.value(film - middle(i))).sum::<f64>();
+        let areas =
+            method.highlights.iter().zip(radii).map(|(highlight, r)| PI * r * r * sum_at(highlight.center.into()));
+        let area: f64 = areas.sum();
+        let expected = [1.0, 2.0, 0.5].map(|color| 2000.0 * color * area / (HEIGHT * HEIGHT));
+        mean.assert_near(expected, 6, filter);
+        assert!(mean.worst_relative_error(expected) < 0.02, "{filter}: {mean:?}");
+    }
+}
+
 /// Rough and smooth surfaces and lamps of which plain samples find enough to compare.
 #[test]
 fn aimed_samples_find_what_plain_samples_find() {
