@@ -68,8 +68,9 @@ pub fn small_highlights(world: &World) -> Vec<Highlight> {
     let step = f64::from(film.width.max(film.height)) / SEARCH_POINTS;
     let chain_of = |events| SpecularChain { world, events, slopes: &slopes };
     let no_surfaces = Search::new(chain_of(&[]), step);
-    let mut found: Vec<Highlight> = lights.iter().filter_map(|light| no_surfaces.seen_light(light)).collect();
-    found.truncate(MAX_HIGHLIGHTS);
+    let searched = lights.iter().take_while(|_| no_surfaces.rays.get() < RAYS_OF_A_LOOK);
+    let mut found: Vec<Highlight> =
+        searched.filter_map(|light| no_surfaces.seen_light(light)).take(MAX_HIGHLIGHTS).collect();
     lights.truncate(MAX_LIGHTS);
     if lights.is_empty() || slopes.iter().all(Option::is_none) {
         return found;
