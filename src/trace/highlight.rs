@@ -104,8 +104,8 @@ const NEIGHBOR_SHARE: f64 = 0.25;
 
 /// Most samples that are aimed at the highlights of a pixel with each camera sample.
 const MAX_AIMED: f64 = 4.0;
-/// Points on the rim of an ellipse that tell whether a pixel sees all of it alike.
-const RIM_POINTS: u32 = 16;
+/// Points on the rim of an ellipse that stand for all of it.
+pub(super) const RIM_POINTS: u32 = 16;
 /// Least value of the filter on such an ellipse, relative to the largest.
 const MIN_RATIO: f64 = 0.5;
 
@@ -128,14 +128,12 @@ impl SeenHighlight {
             return None;
         }
         let (highlight, count) = (Arc::clone(highlight), 1.0);
-        let of_rim = |i: u32| {
-            // The points are the corners of a polygon around the ellipse.
-            let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(RIM_POINTS));
-            let corner = DVec2::new(cos, sin) / libm::cos(0.5 * TAU / f64::from(RIM_POINTS));
-            filter.value(offset(DVec2::from(highlight.center) + highlight.map() * corner, pixel))
-        };
+        // The corners of a polygon around the ellipse.
+        let (map, scale) = (highlight.map(), 1.0 / libm::cos(0.5 * TAU / f64::from(RIM_POINTS)));
+        let corners = rim().map(|point| DVec2::from(highlight.center) + map * (point * scale));
         let center = filter.value(offset(highlight.center.into(), pixel));
-        let [least, most] = (0..RIM_POINTS).map(of_rim).fold([center; 2], |[a, b], x| [a.min(x), b.max(x)]);
+        let values = corners.map(|corner| filter.value(offset(corner, pixel)));
+        let [least, most] = values.fold([center; 2], |[least, most], value| [least.min(value), most.max(value)]);
         if least > MIN_RATIO * most || most < MIN_RATIO * least {
             return Some(Self { highlight, cells: None, value: center.abs(), count });
         }
@@ -159,6 +157,14 @@ impl SeenHighlight {
         let of_cell = |u| self.cells.as_ref().map_or(1.0, |cells| cells.density(u));
         self.highlight.density(film).map_or(0.0, |Density { pdf, u }| self.count * pdf * of_cell(u))
     }
+}
+
+/// Returns points around the unit circle.
+pub(super) fn rim() -> impl Iterator<Item = DVec2> {
+    (0..RIM_POINTS).map(|i| {
+        let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(RIM_POINTS));
+        DVec2::new(cos, sin)
+    })
 }
 
 /// Returns how much a pixel sees of the cells of a highlight, on the average of a cell.

@@ -6,7 +6,7 @@
 //! (Jakob & Marschner 2012, *Manifold Exploration*).
 
 use std::cell::Cell;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use super::specular_chain::{CHAINS, ChainEnd, SpecularChain};
 use crate::film::Filter;
@@ -16,7 +16,7 @@ use crate::math::{Cone, DMat2, DVec2, DVec3, Frame};
 use crate::scene::RayEnds;
 use crate::shape::Ball;
 use crate::spectrum::Table;
-use crate::trace::highlight::Highlight;
+use crate::trace::highlight::{Highlight, rim};
 use crate::trace::{RAYS_OF_A_LOOK, Transport, World};
 
 /// Points along the longer side of the format at which the search for what a first surface mirrors begins, and how
@@ -46,8 +46,6 @@ const MAX_HALF_AXIS: f64 = 16.0;
 /// How much wider than the image of a light its ellipse may be. Film and directions are not quite in proportion,
 /// so the image is no ellipse. The first of these is taken beyond which nothing of the light is seen.
 const MARGINS: [f64; 11] = [1.0003, 1.001, 1.003, 1.006, 1.012, 1.025, 1.05, 1.1, 1.2, 1.4, 1.8];
-/// Points on the rim of an ellipse where that is looked at.
-const RIM_POINTS: u32 = 16;
 /// Radii of the rings on which points are looked at if something occludes the center of an image, relative to its own.
 const RINGS: [f64; 2] = [0.5, 0.9];
 /// Half width of the ellipse of a rough surface's highlight, in widths of its slopes. With this half width W, a
@@ -358,14 +356,6 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Returns points around the unit circle.
-fn rim() -> impl Iterator<Item = DVec2> {
-    (0..RIM_POINTS).map(|i| {
-        let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(RIM_POINTS));
-        DVec2::new(cos, sin)
-    })
-}
-
 /// Whether two searches ended at the same highlight.
 fn is_same(known: &Highlight, new: &Highlight) -> bool {
     (known.light, known.bounces) == (new.light, new.bounces)
@@ -379,6 +369,7 @@ mod tests {
     use crate::scene::Scene;
     use crate::spectrum::{Basis, ColorSpace};
     use crate::trace::Method;
+    use crate::trace::highlight::RIM_POINTS;
 
     #[test]
     fn the_search_ends_when_its_rays_are_used_up() {
