@@ -138,13 +138,14 @@ impl Filter {
         }
     }
 
-    /// Returns whether some point within a distance of an offset from the center of a pixel may have a value.
+    /// Returns whether the filter may differ from 0 within a distance of an offset from the center of a pixel, both in
+    /// pixels.
     pub fn reaches(self, offset: DVec2, distance: f64) -> bool {
-        let shortest = match self {
+        let from_center = match self {
             Self::Gaussian { .. } => offset.length(),
             _ => offset.abs().max_element(),
         };
-        shortest - distance <= self.reach()
+        from_center - distance <= self.reach()
     }
 
     /// Returns the filter's name in a scene file.

@@ -51,7 +51,7 @@ impl Index {
         accept: impl Fn(u32) -> bool,
     ) -> Option<Hit> {
         let triangle = start.map(|start| [start.object, start.part]);
-        let left = start.unwrap_or(Primitive::NONE);
+        let start = start.unwrap_or(Primitive::NONE);
         let pooled = self.pool.as_ref().and_then(|pool| pool.nearest(ray, distance, triangle, &accept));
         let mut nearest = pooled.map(|(object, intersection)| Hit { object, intersection });
         let limit = nearest.map_or(distance, |hit| hit.intersection.t);
@@ -60,7 +60,7 @@ impl Index {
                 return Some(limit);
             }
             let shape = &objects[object as usize].shape;
-            if let Some(intersection) = shape.intersect_from(ray, limit, left.part_of(object)) {
+            if let Some(intersection) = shape.intersect_from(ray, limit, start.part_of(object)) {
                 if nearest.is_none_or(|n| intersection.t < n.intersection.t || object < n.object) {
                     nearest = Some(Hit { object, intersection });
                 }
