@@ -23,6 +23,7 @@ mod fluorescence;
 mod highlights;
 mod lanes;
 mod layers;
+mod lens_lights;
 mod light_vertices;
 mod look;
 mod meshes;

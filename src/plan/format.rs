@@ -67,6 +67,17 @@ pub(super) fn highlights(found: &[Highlight]) -> Option<String> {
         .then(|| format!("{what} {are} smaller than a pixel: some samples of {their} pixels are aimed there"))
 }
 
+/// Describes the small lights that the lens blurs, if there are any.
+pub(super) fn lens_lights(count: usize) -> Option<String> {
+    match count {
+        0 => None,
+        1 => Some("1 light is out of focus: some samples look at it through the part of the lens that sees it".into()),
+        _ => Some(format!(
+            "{count} lights are out of focus: some samples look at them through the parts of the lens that see them"
+        )),
+    }
+}
+
 /// Formats a time as people say it.
 pub(super) fn format_duration(seconds: f64) -> String {
     match seconds {

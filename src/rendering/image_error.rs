@@ -17,7 +17,7 @@ pub struct ImageError {
     pub alpha: Option<Estimate>,
     /// The light that makes an outlier of the noise, in a render that has ended.
     pub rare_light: Option<RareLight>,
-    /// Whether some samples are aimed at small highlights.
+    /// Whether some samples are aimed at small lights or highlights.
     pub has_highlights: bool,
     /// The error that the color model may cause, as the plan predicts: relative to the strongest channel of each color.
     pub model: f64,

@@ -295,7 +295,8 @@ impl Rendering {
         let &Measured { noise, blur, alpha } = self.passes.measured()?;
         let (model, stopped_by) = (self.plan.model_error, self.passes.stopped_by());
         let rare_light = run_on(&self.threads, || stopped_by.and_then(|_| self.passes.rare_light()));
-        let has_highlights = !self.plan.method.highlights.is_empty();
+        let method = &self.plan.method;
+        let has_highlights = !(method.highlights.is_empty() && method.lens_lights.is_empty());
         Some(ImageError {
             requested: self.render.error,
             noise,

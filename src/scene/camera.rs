@@ -211,9 +211,13 @@ impl Camera {
     /// A ray that starts at a point p of the lens has the direction (x, y, 1) - p / F. Therefore all rays of one point
     /// of the film meet at distance F, and 1 / F may be 0.
     pub fn lens_ray(&self, film: DVec2, u: [f64; 2]) -> Ray {
+        self.ray_from_lens(film, sample_disk(u) * self.lens_radius())
+    }
+
+    /// Returns the ray through a point of the film and a point of the lens, given in scene units to the right and up.
+    pub fn ray_from_lens(&self, film: DVec2, place: DVec2) -> Ray {
         let Some(lens) = self.lens else { return self.ray(film) };
         let (start, along) = self.chief_ray(film);
-        let place = sample_disk(u) * lens.radius;
         let place = self.right * place.x + self.up * place.y;
         let along = along - place * lens.inverse_focus;
         Ray { origin: start + place + along * self.near, direction: unit(along) }
@@ -303,6 +307,27 @@ impl Camera {
     /// Returns whether the rays of a point of the film start on a lens with an extent.
     pub fn has_lens(&self) -> bool {
         self.lens.is_some()
+    }
+
+    /// Returns the radius of the lens in scene units; 0 for a pinhole.
+    pub fn lens_radius(&self) -> f64 {
+        self.lens.map_or(0.0, |lens| lens.radius)
+    }
+
+    /// Returns how far the point of the lens from which a point of the film sees a place moves across the lens, in
+    /// scene units, where the point of the film moves by one unit of the image window. `depth` is that of the place.
+    /// Where the place is in focus, the result is infinite.
+    pub fn lens_shift(&self, depth: f64) -> f64 {
+        let inverse_focus = self.lens.map_or(0.0, |lens| lens.inverse_focus);
+        match self.projection {
+            Projection::Orthographic { .. } => 1.0 / (depth * inverse_focus - 1.0),
+            _ => 1.0 / (inverse_focus - 1.0 / depth),
+        }
+    }
+
+    /// Returns the size of a pixel in the image window, to the right and up where the film runs to the right and down.
+    pub fn pixel_in_window(&self) -> DVec2 {
+        2.0 * self.half_size / self.size * DVec2::new(1.0, -1.0)
     }
 
     /// Returns whether rays may start away from the camera's position.

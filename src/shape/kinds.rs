@@ -328,6 +328,16 @@ impl Shape {
         }
     }
 
+    /// Returns the flat polygons that the shape consists of: its parts, or itself. There are none if it is round.
+    pub fn polygons(&self) -> impl Iterator<Item = Polygon<'_>> {
+        let own = match self {
+            Self::Quad(Quad { plane }) => Some(Polygon(PolygonKind::Parallelogram(plane))),
+            Self::Triangle(triangle) => Some(Polygon(PolygonKind::Triangle(triangle.clone()))),
+            _ => None,
+        };
+        own.into_iter().chain((0..self.part_count()).filter_map(|part| self.part(part)))
+    }
+
     /// Samples a direction from a point toward one of the parts.
     pub fn sample_part(&self, part: u32, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
         Some(self.part(part)?.sample(from, u)?.with_part(part))

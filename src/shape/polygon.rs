@@ -28,6 +28,18 @@ impl Polygon<'_> {
         }
     }
 
+    /// Returns the corners of one or two triangles that fill the polygon.
+    pub fn triangles(&self) -> impl Iterator<Item = [DVec3; 3]> {
+        let (first, second) = match &self.0 {
+            PolygonKind::Triangle(triangle) | PolygonKind::Facet(Facet { triangle, .. }) => (triangle.points, None),
+            PolygonKind::Parallelogram(AffinePlane { center, u, v, .. }) => {
+                let [a, b, c, d] = [*u + *v, *u - *v, -*u - *v, *v - *u].map(|arm| *center + arm);
+                ([a, b, c], Some([c, d, a]))
+            }
+        };
+        std::iter::once(first).chain(second)
+    }
+
     /// Returns the unit normal on the front.
     pub fn normal(&self) -> DVec3 {
         match &self.0 {

@@ -102,8 +102,8 @@ const POINTS_PER_SIDE: usize = 2;
 /// has none of its points.
 const NEIGHBOR_SHARE: f64 = 0.25;
 
-/// Most samples that are aimed at the highlights of a pixel with each camera sample.
-const MAX_AIMED: f64 = 4.0;
+/// Most samples that are aimed at the highlights of a pixel, or at lights that the lens blurs, with each camera sample.
+pub(super) const MAX_AIMED: f64 = 4.0;
 /// Points on the rim of an ellipse that stand for all of it.
 pub(super) const RIM_POINTS: u32 = 16;
 /// Least value of the filter on such an ellipse, relative to the largest.
@@ -112,7 +112,7 @@ const MIN_RATIO: f64 = 0.5;
 /// What a pixel sees of a highlight: samples are drawn only there.
 #[derive(Clone, Debug)]
 pub(super) struct SeenHighlight {
-    highlight: Arc<Highlight>,
+    pub(super) highlight: Arc<Highlight>,
     /// How samples are spread over the cells of the ellipse; `None` if the pixel sees all of it nearly alike.
     cells: Option<Box<Distribution2d>>,
     /// The mean value of the pixel's filter.
@@ -236,72 +236,13 @@ impl Highlights {
     }
 }
 
-/// Which light of a camera sample counts, and how much.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Counted<'a> {
-    /// All light of a sample of the pixel, at a point of the film. `pdf` is the density of such samples there. Light
-    /// that the highlights show counts less.
-    Ordinary { film: DVec2, pdf: f64, highlights: &'a [SeenHighlight] },
-    /// Light of a sample that was aimed at a highlight: only what it shows, by this factor.
-    Aimed { light: LightId, bounces: u32, factor: f64 },
-}
-
-impl<'a> Counted<'a> {
-    /// All light.
-    pub const ALL: Self = Self::Ordinary { film: DVec2::ZERO, pdf: 1.0, highlights: &[] };
-
-    /// Returns what counts of an ordinary sample. `offset` is that of its point from the middle of the pixel.
-    pub fn ordinary(filter: Filter, film: DVec2, offset: DVec2, highlights: &'a [SeenHighlight]) -> Self {
-        if highlights.is_empty() {
-            Self::ALL
-        } else {
-            Self::Ordinary { film, pdf: density(filter, offset), highlights }
-        }
-    }
-
-    /// Returns what counts of a sample that was aimed at one of the highlights; `None` if its point is outside the
-    /// pixel's filter.
-    pub fn aimed(
-        filter: Filter,
-        film: DVec2,
-        offset: DVec2,
-        aim: &SeenHighlight,
-        highlights: &[SeenHighlight],
-    ) -> Option<Self> {
-        let Highlight { light, bounces, .. } = *aim.highlight;
-        let value = filter.value(offset);
-        let factor = value / (density(filter, offset) + density_of(highlights, light, bounces, film));
-        (value != 0.0).then_some(Self::Aimed { light, bounces, factor })
-    }
-
-    /// Whether the sample was aimed at a highlight.
-    pub fn is_aimed(&self) -> bool {
-        matches!(self, Self::Aimed { .. })
-    }
-
-    /// Returns the factor on light of a source that surfaces sent on `bounces` times. It may be negative, where a
-    /// filter is.
-    #[inline]
-    pub fn factor(&self, source: Option<LightId>, bounces: u32) -> f64 {
-        match *self {
-            Self::Ordinary { highlights: [], .. } => 1.0,
-            Self::Ordinary { film, pdf, highlights } => match source {
-                Some(light) => pdf / (pdf + density_of(highlights, light, bounces, film)),
-                None => 1.0,
-            },
-            Self::Aimed { light, bounces: mirrors, factor } if (source, bounces) == (Some(light), mirrors) => factor,
-            Self::Aimed { .. } => 0.0,
-        }
-    }
-}
-
 /// Returns the density of a pixel's ordinary samples, per square pixel.
-fn density(filter: Filter, offset: DVec2) -> f64 {
+pub(super) fn density(filter: Filter, offset: DVec2) -> f64 {
     filter.value(offset).abs() / filter.absolute_integral()
 }
 
 /// Returns the mean density of the samples that come with a camera sample and are aimed at highlights of a light after
 /// so many bounces, per square pixel.
-fn density_of(highlights: &[SeenHighlight], light: LightId, bounces: u32, film: DVec2) -> f64 {
+pub(super) fn density_of(highlights: &[SeenHighlight], light: LightId, bounces: u32, film: DVec2) -> f64 {
     highlights.iter().filter(|highlight| highlight.shows(light, bounces)).map(|highlight| highlight.density(film)).sum()
 }

@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{BrightPlaces, Highlight, SampleDensity, SkyOpenings, Smoothness, SunlitPlaces};
+use super::{BrightPlaces, Highlight, LensLight, SampleDensity, SkyOpenings, Smoothness, SunlitPlaces};
 use crate::light::{LightId, Opening};
 use crate::spectrum::Basis;
 
@@ -39,6 +39,8 @@ pub struct Method {
     pub openings: SkyOpenings,
     /// Small highlights at which some samples of their pixels are aimed.
     pub highlights: Vec<Highlight>,
+    /// Small lights that the lens blurs, at which some samples are aimed.
+    pub lens_lights: Vec<LensLight>,
     /// Whether polarization is traced.
     pub polarization: Polarizing,
 }
@@ -78,6 +80,7 @@ impl Method {
             sunlit: Vec::new(),
             openings: SkyOpenings::default(),
             highlights: Vec::new(),
+            lens_lights: Vec::new(),
             polarization: Polarizing::Averaged,
         }
     }

@@ -34,6 +34,7 @@ mod bright;
 mod budget;
 mod camera;
 mod contribution;
+mod counted;
 mod density;
 mod dispersion;
 mod dyes;
@@ -42,6 +43,7 @@ mod guide;
 mod highlight;
 mod image;
 mod layers;
+mod lens_light;
 mod media;
 mod method;
 mod parallel;
@@ -69,6 +71,7 @@ pub use image::{
     Advance, Estimate, FIRST_LOOK, Measured, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored,
     Stopped, TileNoise, bytes_of_film, render,
 };
+pub use lens_light::LensLight;
 pub use media::MAX_MEDIA;
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
 pub use parallel::run_on;
@@ -77,9 +80,9 @@ pub use photon::light_paths_reach;
 pub use photon_focus::Smoothness;
 pub use probe::{
     Adaptive, Branching, Effort, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, RoomLight, SampleWorth,
-    adaptive, branching, gathered_worth, most_changed, photon_times, photons_within, photons_worth, pilot_noise,
-    piloted, polarization_error, prepare, prepare_unguided, probe, reached_places, room_light, seen_photons,
-    small_highlights, with_light_vertices,
+    adaptive, blurred_lights, branching, gathered_worth, most_changed, photon_times, photons_within, photons_worth,
+    pilot_noise, piloted, polarization_error, prepare, prepare_unguided, probe, reached_places, room_light,
+    seen_photons, small_highlights, with_light_vertices,
 };
 pub use replicates::REPLICATES;
 pub use world::World;

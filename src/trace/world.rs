@@ -5,6 +5,7 @@ use super::density::{Rate, SampleDensity};
 use super::dyes::Dyes;
 use super::highlight::{Highlight, Highlights};
 use super::layers::Layers;
+use super::lens_light::{LensLight, LensLights};
 use super::media::{Media, media_of_lights};
 use super::path_start::{PathStart, SkyOpenings, SunlitPlaces};
 use super::photon_focus::places;
@@ -59,6 +60,8 @@ pub struct World {
     pub(super) path_starts: Arc<[PathStart]>,
     /// The highlights at which samples of each pixel are aimed.
     pub(super) highlights: Arc<Highlights>,
+    /// The small lights that the lens blurs, at which samples are aimed.
+    pub(super) lens_lights: Arc<LensLights>,
     /// Where photons are sent, if the method has a light pass.
     pub(super) photon_targets: Option<PhotonTargets>,
     /// Where each pass of the light pass's map sends photons.
@@ -96,6 +99,7 @@ impl World {
         let bright = method.bright.as_ref().map(AimedSampler::new);
         let path_starts = if method.light_vertices { path_starts(&scene, &method) } else { Arc::new([]) };
         let highlights = Arc::new(Highlights::new(&method.highlights, scene.film.filter));
+        let lens_lights = Arc::new(LensLights::new(&method.lens_lights, scene.camera.lens_radius()));
         let mut world = Self {
             waves: method.basis.waves(),
             layers,
@@ -117,6 +121,7 @@ impl World {
             bright,
             path_starts,
             highlights,
+            lens_lights,
             photon_targets: None,
             map_targets: None,
             light_media: Arc::default(),
@@ -169,6 +174,14 @@ impl World {
     pub fn with_highlights(mut self, highlights: Vec<Highlight>) -> Self {
         self.highlights = Arc::new(Highlights::new(&highlights, self.scene.film.filter));
         self.method.highlights = highlights;
+        self
+    }
+
+    /// Returns this world with some samples aimed at lights that the lens blurs.
+    #[must_use]
+    pub fn with_lens_lights(mut self, lens_lights: Vec<LensLight>) -> Self {
+        self.lens_lights = Arc::new(LensLights::new(&lens_lights, self.scene.camera.lens_radius()));
+        self.method.lens_lights = lens_lights;
         self
     }
 

@@ -1,12 +1,12 @@
 //! Paths from the camera. They pass direct light, gathered photons and light vertices to the sensor.
 
+mod aimed_samples;
 mod aimed_scattering;
 mod camera_sample;
 mod catcher;
 mod dimensions;
 mod direct;
 mod emitter_hit;
-mod highlight_samples;
 mod layer_sample;
 mod light_vertex_gathering;
 mod path_tracer;

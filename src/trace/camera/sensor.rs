@@ -5,7 +5,7 @@ use crate::math::DVec3;
 use crate::spectrum::Draw;
 use crate::trace::World;
 use crate::trace::contribution::{Contribution, add};
-use crate::trace::highlight::Counted;
+use crate::trace::counted::Counted;
 use crate::trace::photon::Gathered;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{FoundLight, Path, Polarization, ScatterSample};

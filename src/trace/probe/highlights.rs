@@ -8,13 +8,12 @@
 use std::cell::Cell;
 use std::f64::consts::PI;
 
+use super::small_light::{ApparentLight, Place, SmallLight, SmallLights};
 use super::specular_chain::{CHAINS, ChainEnd, SpecularChain};
 use crate::film::Filter;
-use crate::light::{Environment, Light, LightId};
 use crate::material::{Lobes, Material};
-use crate::math::{Cone, DMat2, DVec2, DVec3, Frame};
+use crate::math::{DMat2, DVec2, DVec3, Frame};
 use crate::scene::RayEnds;
-use crate::shape::Ball;
 use crate::spectrum::Table;
 use crate::trace::highlight::{Highlight, rim};
 use crate::trace::{RAYS_OF_A_LOOK, Transport, World};
@@ -31,8 +30,6 @@ const MAX_HIGHLIGHTS: usize = 1024;
 const FAR: f64 = 1e40;
 /// Half angle of the largest light that counts as small, in radians.
 const MAX_HALF_ANGLE: f64 = 0.2;
-/// Directions that are drawn along each side of a square to find where the bright part of a sky is.
-const DRAWS_PER_SIDE: u32 = 16;
 /// Steps of Newton's method, and how often one is halved that leads farther away.
 const MAX_NEWTON_STEPS: usize = 24;
 const MAX_HALVINGS: usize = 8;
@@ -60,16 +57,16 @@ pub fn small_highlights(world: &World) -> Vec<Highlight> {
     if !is_random || !is_sharp || world.has_mattes {
         return Vec::new();
     }
-    let mut lights = small_lights(world);
+    let small_lights = SmallLights::new(world, MAX_HIGHLIGHTS);
     let slopes: Vec<Option<f64>> = scene.materials.iter().map(|named| slopes(&named.material)).collect();
     let film = scene.film;
     let step = f64::from(film.width.max(film.height)) / SEARCH_POINTS;
     let chain_of = |events| SpecularChain { world, events, slopes: &slopes };
     let no_surfaces = Search::new(chain_of(&[]), step);
-    let searched = lights.iter().take_while(|_| no_surfaces.rays.get() < RAYS_OF_A_LOOK);
+    let searched = small_lights.in_parts(MAX_HIGHLIGHTS).take_while(|_| no_surfaces.rays.get() < RAYS_OF_A_LOOK);
     let mut found: Vec<Highlight> =
-        searched.filter_map(|light| no_surfaces.seen_light(light)).take(MAX_HIGHLIGHTS).collect();
-    lights.truncate(MAX_LIGHTS);
+        searched.filter_map(|light| no_surfaces.seen_light(&light)).take(MAX_HIGHLIGHTS).collect();
+    let lights: Vec<SmallLight> = small_lights.in_parts(MAX_LIGHTS).take(MAX_LIGHTS).collect();
     if lights.is_empty() || slopes.iter().all(Option::is_none) {
         return found;
     }
@@ -97,90 +94,23 @@ fn slopes(material: &Material<Table>) -> Option<f64> {
     material.with_parts().into_iter().filter_map(part_slopes).min_by(f64::total_cmp)
 }
 
-/// A light that is looked for.
-struct SmallLight {
-    id: LightId,
-    /// Its object, if it has one.
-    object: Option<u32>,
-    place: Place,
-}
-
-/// Where a light is.
-enum Place {
-    /// In a direction, within a half angle of this sine.
-    Far { direction: DVec3, sin: f64 },
-    /// In a ball.
-    Near(Ball),
-}
-
-impl SmallLight {
-    /// Returns the direction from a point to its center, the sine of its half angle and the distance.
-    fn seen_from(&self, point: DVec3) -> ApparentLight {
-        match &self.place {
-            &Place::Far { direction, sin } => ApparentLight { direction, sin, distance: f64::INFINITY },
-            Place::Near(ball) => {
-                let way = ball.center - point;
-                let distance = way.length();
-                ApparentLight { direction: way / distance, sin: ball.radius / distance, distance }
-            }
-        }
-    }
-}
-
-/// How a light is seen from a point.
-struct ApparentLight {
-    direction: DVec3,
-    sin: f64,
-    distance: f64,
-}
-
-/// Returns all lights whose images may be small, suns and skies first.
-fn small_lights(world: &World) -> Vec<SmallLight> {
-    let small_light = |(id, light): (LightId, &Light<Table>)| {
-        let (object, place) = match light {
-            Light::Sun(sun) => {
-                let sin = libm::sin(0.5 * sun.angular_diameter.to_radians());
-                (None, Place::Far { direction: sun.center_direction(), sin })
-            }
-            Light::Area(area) => (Some(area.object), Place::Near(area.visible_part()?.0)),
-            Light::Point(point) => (None, Place::Near(Ball { center: point.position.into(), radius: 0.0 })),
-            Light::Spot(spot) => (None, Place::Near(Ball { center: spot.position.into(), radius: 0.0 })),
-            Light::Environment(sky) => (None, bright_part(sky)?),
-        };
-        Some(SmallLight { id, object, place })
-    };
-    let mut lights: Vec<SmallLight> = world.scene.lights.iter().enumerate().filter_map(small_light).collect();
-    lights.sort_by_key(|light| matches!(light.place, Place::Near(_)));
-    lights
-}
-
-/// Returns where the bright part of a sky's image is, such as the sun; `None` without one.
-fn bright_part(sky: &Environment<Table>) -> Option<Place> {
-    let cell_center = |i: u32| (f64::from(i) + 0.5) / f64::from(DRAWS_PER_SIDE);
-    let drawn = (0..DRAWS_PER_SIDE * DRAWS_PER_SIDE)
-        .map(|i| Some(sky.sample_bright([cell_center(i % DRAWS_PER_SIDE), cell_center(i / DRAWS_PER_SIDE)])?.0));
-    let Cone { axis, one_minus_cos } = Cone::around(&drawn.collect::<Option<Vec<DVec3>>>()?)?;
-    Some(Place::Far { direction: axis, sin: (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt() })
-}
-
-impl SmallLight {
-    /// Returns how far a surface is from sending its light to the camera.
-    fn mismatch(&self, end: &ChainEnd) -> Mismatch {
-        let ApparentLight { direction, .. } = self.seen_from(end.point.position);
-        if end.slopes == 0.0 {
-            return Mismatch { target: direction, difference: end.outgoing - direction };
-        }
-        let half = (end.wo + direction).normalize_or_zero();
-        Mismatch { target: end.normal, difference: half - end.normal }
-    }
-}
-
 /// How far a surface is from sending the light of a source to the camera: the difference of two unit vectors, and the
 /// one that the other should be equal to. They are the direction of the light and the one in which a smooth surface
 /// sends the ray, or the normal of a rough surface and that of the facet which mirrors the light.
 struct Mismatch {
     target: DVec3,
     difference: DVec3,
+}
+
+impl Mismatch {
+    fn of(light: &SmallLight, end: &ChainEnd) -> Self {
+        let ApparentLight { direction, .. } = light.seen_from(end.point.position);
+        if end.slopes == 0.0 {
+            return Self { target: direction, difference: end.outgoing - direction };
+        }
+        let half = (end.wo + direction).normalize_or_zero();
+        Self { target: end.normal, difference: half - end.normal }
+    }
 }
 
 struct Search<'a> {
@@ -223,7 +153,7 @@ impl<'a> Search<'a> {
             return;
         }
         for (light, left) in lights.iter().zip((1..=lights.len() as u64).rev()) {
-            let squared_mismatch = |end: &ChainEnd| light.mismatch(end).difference.length_squared();
+            let squared_mismatch = |end: &ChainEnd| Mismatch::of(light, end).difference.length_squared();
             let squared_mismatches: Vec<f64> =
                 ends.iter().map(|end| end.as_ref().map_or(f64::INFINITY, squared_mismatch)).collect();
             let is_nearest = |&i: &usize| {
@@ -256,9 +186,9 @@ impl<'a> Search<'a> {
         let trace = |film: DVec2| self.trace_like(film, near);
         let (mut film, mut end) = (start, trace(start)?);
         for _ in 0..MAX_NEWTON_STEPS {
-            let Mismatch { target, difference } = light.mismatch(&end);
+            let Mismatch { target, difference } = Mismatch::of(light, &end);
             let frame = Frame::about(target);
-            let local_difference = |end: &ChainEnd| frame.to_local(light.mismatch(end).difference).truncate();
+            let local_difference = |end: &ChainEnd| frame.to_local(Mismatch::of(light, end).difference).truncate();
             let current = local_difference(&end);
             let derivative = |step: DVec2| Some((local_difference(&trace(film + step)?) - current) / (step.x + step.y));
             let column = |step: DVec2| derivative(step).or_else(|| derivative(-step));
@@ -272,7 +202,7 @@ impl<'a> Search<'a> {
                 return self.highlight(film - inverse_jacobian * current, &end, light, inverse_jacobian);
             }
             let mut step = (inverse_jacobian * -current).clamp_length_max(4.0 * self.step);
-            let is_nearer = |next: &ChainEnd| light.mismatch(next).difference.length() < difference.length();
+            let is_nearer = |next: &ChainEnd| Mismatch::of(light, next).difference.length() < difference.length();
             let next = (0..MAX_HALVINGS).find_map(|_| {
                 let next = trace(film + step).filter(is_nearer).map(|next| (film + step, next));
                 step *= 0.5;
@@ -289,7 +219,7 @@ impl<'a> Search<'a> {
         self.chain.trace(film).filter(|end| end.objects == other.objects)
     }
 
-    /// Returns the half width of a highlight, as a difference of the vectors that [`SmallLight::mismatch`] compares.
+    /// Returns the half width of a highlight, as a difference of the vectors that [`Mismatch`] compares.
     fn width(&self, end: &ChainEnd, light: &SmallLight) -> f64 {
         let ApparentLight { sin, .. } = light.seen_from(end.point.position);
         match end.slopes {
@@ -302,7 +232,7 @@ impl<'a> Search<'a> {
     fn margin(&self, film: DVec2, center: &ChainEnd, light: &SmallLight, radii: DMat2) -> f64 {
         let is_lit = |end: ChainEnd| {
             let ApparentLight { sin, .. } = light.seen_from(end.point.position);
-            light.mismatch(&end).difference.length() < sin
+            Mismatch::of(light, &end).difference.length() < sin
         };
         let contains_image = |margin: &&f64| {
             rim().all(|point| !self.trace_like(film + radii * (point * **margin), center).is_some_and(is_lit))
@@ -389,7 +319,7 @@ mod tests {
         let transport = Transport::Random { split: 0.05, roulette: 0.05 };
         let world = World::new(&scene, Method::of_paths(Basis::rgb(ColorSpace::Rec709), transport, 0));
         let slopes: Vec<Option<f64>> = world.scene.materials.iter().map(|named| slopes(&named.material)).collect();
-        let lights = small_lights(&world);
+        let lights: Vec<SmallLight> = SmallLights::new(&world, MAX_LIGHTS).in_parts(MAX_LIGHTS).collect();
         let search = |rays: u64| {
             let search = Search::new(SpecularChain { world: &world, events: CHAINS[0], slopes: &slopes }, 0.5);
             let mut found = Vec::new();
