@@ -137,13 +137,13 @@ impl<S> Scene<S> {
 
     /// Returns the nearest hit along a ray that may start on the primitive `from`.
     pub fn intersect_from(&self, ray: &Ray, from: Option<Primitive>) -> Option<Hit> {
-        self.index.nearest(&self.objects, ray, f64::INFINITY, from, accept_all)
+        self.nearest_from(ray, f64::INFINITY, from, accept_all)
     }
 
     /// Returns the nearest hit along a camera ray. The ray may start on a primitive `from` that it passed straight
     /// through.
     pub fn intersect_seen(&self, ray: &Ray, from: Option<Primitive>) -> Option<Hit> {
-        self.nearest_from(ray, from, &|object| self.is_seen(object))
+        self.nearest_from(ray, f64::INFINITY, from, |object| self.is_seen(object))
     }
 
     /// Returns whether the camera sees an object, or at least the hole that it cuts.
@@ -154,7 +154,8 @@ impl<S> Scene<S> {
     /// Returns the nearest hit along a ray in the world of the plate ([`Scene::is_of_plate`]). A camera ray
     /// (`is_camera_ray`) does not hit what is hidden from the camera.
     pub fn intersect_plate(&self, ray: &Ray, from: Option<Primitive>, is_camera_ray: bool) -> Option<Hit> {
-        self.nearest_from(ray, from, &|object| self.is_of_plate(object) && (!is_camera_ray || self.is_seen(object)))
+        let is_there = |object| self.is_of_plate(object) && (!is_camera_ray || self.is_seen(object));
+        self.nearest_from(ray, f64::INFINITY, from, is_there)
     }
 
     /// Returns whether an object stands for something in the plate or lights it: a shadow catcher, a holdout or a lamp.
@@ -170,7 +171,7 @@ impl<S> Scene<S> {
 
     /// Returns the nearest hit along a ray up to a distance, among the objects for which `accept` holds.
     pub fn nearest(&self, ray: &Ray, distance: f64, accept: &dyn Fn(u32) -> bool) -> Option<Hit> {
-        self.index.nearest(&self.objects, ray, distance, None, accept)
+        self.nearest_from(ray, distance, None, accept)
     }
 
     /// Returns the objects without bounds, which are planes, with their numbers.
@@ -179,8 +180,29 @@ impl<S> Scene<S> {
         all.filter(|(_, object)| !object.shape.is_bounded())
     }
 
-    fn nearest_from(&self, ray: &Ray, from: Option<Primitive>, accept: &dyn Fn(u32) -> bool) -> Option<Hit> {
-        self.index.nearest(&self.objects, ray, f64::INFINITY, from, accept)
+    #[inline]
+    fn nearest_from(
+        &self,
+        ray: &Ray,
+        distance: f64,
+        from: Option<Primitive>,
+        accept: impl Fn(u32) -> bool,
+    ) -> Option<Hit> {
+        let hit = self.index.nearest(&self.objects, ray, distance, from, &accept)?;
+        if self.objects[hit.object as usize].contact == 0.0 || !self.is_clear(hit.object) {
+            return Some(hit);
+        }
+        self.opaque_at(ray, from, &hit, &accept).or(Some(hit))
+    }
+
+    /// Returns the hit of an opaque surface in the place where a ray has hit a clear one. Beyond the clear surface, the
+    /// ray would start behind the opaque one and miss it.
+    #[cold]
+    fn opaque_at(&self, ray: &Ray, from: Option<Primitive>, clear: &Hit, accept: &dyn Fn(u32) -> bool) -> Option<Hit> {
+        let next = self.objects[clear.object as usize].point(ray, &clear.intersection).leave(ray.direction);
+        let distance = (next.origin - ray.origin).dot(ray.direction);
+        let is_opaque = |object| !self.is_clear(object) && !self.material_of(object).is_see_through();
+        self.index.nearest(&self.objects, ray, distance, from, |object| is_opaque(object) && accept(object))
     }
 
     /// Returns whether anything lies before a light at `distance`. The light's own object does not occlude it, unless

@@ -33,6 +33,8 @@ pub struct Object {
     pub visibility: Visibility,
     /// The image that perturbs its normal, if there is one.
     pub relief: Option<Arc<NormalPerturbation>>,
+    /// Within this distance, a clear and an opaque surface count as one; 0 if the object shares none with another.
+    pub contact: f64,
 }
 
 /// What the camera sees of an object when it looks at it directly. Lighting, reflections and shadows do not depend on
@@ -53,9 +55,12 @@ pub enum Visibility {
 
 impl Object {
     /// Returns the surface at an intersection, with its shading normal perturbed by the relief if there is one.
+    ///
+    /// Its error includes another surface that counts as one with it: rays that leave one of them start beyond both.
     #[inline]
     pub fn point(&self, ray: &Ray, intersection: &Intersection) -> SurfacePoint {
         let mut point = self.shape.point(ray, intersection);
+        point.error += self.contact;
         if let Some(relief) = &self.relief {
             point.shading = relief.normal(&self.shape, intersection, &point);
         }

@@ -196,17 +196,18 @@ fn medium_changes(
     to: Option<DVec3>,
     counts: ObjectFilter,
 ) -> impl Iterator<Item = MediumChange> {
+    let is_of_body = move |object: u32| scene.material_of(object).medium().is_some() && counts(object);
     let surfaces = std::iter::from_fn(move || {
         let remaining_distance = to.map_or(f64::INFINITY, |to| (to - ray.origin).dot(ray.direction));
-        let hit = scene.nearest(&ray, f64::INFINITY, counts).filter(|hit| hit.intersection.t <= remaining_distance)?;
+        let hit = scene.nearest(&ray, f64::INFINITY, &is_of_body);
+        let hit = hit.filter(|hit| hit.intersection.t <= remaining_distance)?;
         let object = &scene.objects[hit.object as usize];
         let point = object.shape.point(&ray, &hit.intersection);
         let enters = point.normal.dot(ray.direction) < 0.0;
         ray = point.leave(ray.direction);
         Some(MediumChange { material: object.material, enters })
     });
-    let is_of_body = move |change: &MediumChange| scene.materials[change.material as usize].material.medium().is_some();
-    surfaces.take(MAX_CROSSINGS).filter(is_of_body)
+    surfaces.take(MAX_CROSSINGS)
 }
 
 /// Returns how many half spaces of each medium a point lies in, among the planes that count.

@@ -14,7 +14,8 @@ use super::{LightPass, Method, Polarizing, Transport};
 use crate::light::{Light, LightId, LightSampler, Opening};
 use crate::material::Lobes;
 use crate::math::{DVec3, Ray};
-use crate::scene::{Hit, Scene, Visibility};
+use crate::scene::{Scene, Visibility};
+use crate::shape::SurfacePoint;
 use crate::spectrum::{Curve, CurveCache, Draw, MAX_LANES, Quantity, Response, Table, Waves, apply};
 
 /// Maximum number of groups of lights that are weighed separately. If there are more lights, neighbors share one.
@@ -338,11 +339,13 @@ impl World {
         self.camera_media.after_walk(&self.scene, segment, &|object| self.scene.is_seen(object))
     }
 
-    /// Returns the media around a surface that a camera ray has hit, of bodies that the camera does not see.
+    /// Returns the media before a surface that a camera ray has hit, of bodies that the camera does not see. A body
+    /// that ends exactly at the surface is around the ray there.
     #[cold]
-    pub(super) fn media_hidden_at(&self, ray: &Ray, hit: &Hit) -> Media {
+    pub(super) fn media_hidden_at(&self, ray: &Ray, point: &SurfacePoint) -> Media {
         let is_hidden = |object: u32| !self.scene.is_seen(object);
-        let [camera, start, end] = [self.scene.camera.position(), ray.origin, ray.at(hit.intersection.t)];
+        let before = point.leave(-ray.direction).origin;
+        let [camera, start, end] = [self.scene.camera.position(), ray.origin, before];
         let walked = |media: Media, segment| media.after_walk(&self.scene, segment, &is_hidden);
         walked(walked(self.hidden_media, [camera, start]), [start, end])
     }

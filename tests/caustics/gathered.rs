@@ -1,12 +1,14 @@
 //! Caustics that are seen in mirrors, through glass or indirectly, by way of surfaces that they light: the photons that
 //! land are gathered. Images with photons are compared with images of camera paths alone.
 
+use std::f64::consts::PI;
+
 use abbe::trace::MapPasses;
 
 use super::agreement::{
     ABOVE, BALL, FLOOR, LAMP, assert_agree_with_map, blocks, camera_and_film, glass, scene_and_method,
 };
-use crate::support::scenes::{object, sigma_limit};
+use crate::support::scenes::{film_of, object, sigma_limit};
 
 /// A map with a radius so small that its blur moves nothing between blocks that these samples could resolve.
 pub const NARROW: MapPasses = MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 };
@@ -122,4 +124,33 @@ fn photons_are_gathered_as_widely_behind_a_near_plane() {
     for (a, b) in whole.iter().zip(&cut) {
         assert!((a.0 - b.0).abs() <= 1e-4 * a.0, "{} for {}", b.0, a.0);
     }
+}
+
+/// All light of a point in a round room with a perfect mirror ball ends on the wall. Its mean is that of an
+/// integrating sphere, reflectance times power over pi, area and 1 - reflectance (Goebel 1967, *Generalized
+/// Integrating-Sphere Theory*). The rows of the image are weighted by their solid angle, so the camera in the middle
+/// takes the mean over the wall. Photons on a concave wall did not fill the disc by which their sum is divided: 5 % of
+/// the light was missing.
+#[test]
+fn photons_in_a_round_room_fill_it_with_light_however_wide_the_radius() {
+    const ROWS: usize = 16;
+    let text = format!(
+        "camera = {{ projection = \"equirectangular\", position = [0, 0, 0], look_at = [0, 0, 1] }}\n\
+         film = {{ width = {}, height = {ROWS} }}\nrender = {{ samples = 64 }}\n[material]\n\
+         wall.diffuse.reflectance = 0.8\nmirror.mirror.reflectance = 1\n\
+         [[object]]\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\nmaterial = \"wall\"\n\
+         [[object]]\nshape.sphere = {{ center = [0, 0, 0], radius = 0.45 }}\nmaterial = \"mirror\"\n\
+         visible_to_camera = false\n[[light]]\npoint = {{ position = [0.6, 0, 0], intensity = 1 }}\n",
+        2 * ROWS
+    );
+    let (scene, method) = scene_and_method(&text);
+    assert!(method.map().is_some(), "photons are gathered");
+    let film = film_of(&scene, method);
+    let edge = |row: usize| (PI * row as f64 / ROWS as f64).cos();
+    let weight = |row: usize| 0.5 * (edge(row) - edge(row + 1)) / (2 * ROWS) as f64;
+    let pixels = film.pixels.iter().enumerate();
+    let mean: f64 = pixels.map(|(pixel, value)| weight(pixel / (2 * ROWS)) * f64::from(value.rgb[1])).sum();
+    let expected = 0.8 * 4.0 * PI / (PI * 4.0 * PI * (1.0 - 0.8));
+    // The standard error is 0.002.
+    assert!((mean / expected - 1.0).abs() < 0.02, "{mean} for {expected}");
 }

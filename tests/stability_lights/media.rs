@@ -6,7 +6,8 @@ use abbe::material::Interface;
 use abbe::scene::Source;
 
 use crate::support::scenes::{
-    EVERY_BRANCH, GROUND, SPLITTING, body, environment, first_mistake, render_film, scene, view,
+    EVERY_BRANCH, GROUND, SPLITTING, body, environment, first_mistake, mean_color, quad, render_film, render_text,
+    scene, view,
 };
 
 /// Returns the reflectance for diffuse light from outside of a medium: Walsh 1926, *The Reflection Factor of a Polished
@@ -48,6 +49,40 @@ fn m2_clear_bodies_that_share_a_surface_are_refused_and_those_that_overlap_are_n
     for half in [0.99, 1.01] {
         let (_, report) = render_film(&text(half), EVERY_BRANCH);
         assert_eq!(report.unmatched, 0, "{half}");
+    }
+}
+
+/// Which of two surfaces in one place was hit depended on the order of the objects and on rounding. If it was that of
+/// the clear box, the ray went on below the floor, which was then black in the sun and transparent under a sky.
+#[test]
+fn m2_a_clear_box_that_lies_on_a_floor_hides_nothing_of_it_whichever_comes_first() {
+    let image = |height: f64, is_seen: bool, box_first: bool, light: &str| {
+        let clear = body(
+            "clear",
+            "dielectric = { index = 1 }",
+            &[&format!("cube = {{ center = [0, {:?}, 0], size = [4, 1, 4] }}", height + 0.5)],
+        ) + &format!("visible_to_camera = {is_seen}\n");
+        let floor = body(
+            "floor",
+            "diffuse = { reflectance = 0.5 }",
+            &[&quad([0.0, height, 0.0], [0.0, 0.0, 5.0], [5.0, 0.0, 0.0])],
+        );
+        let objects = if box_first { clear + &floor } else { floor + &clear };
+        let image = view([0.0, height + 3.0, 0.5], [0.0, height, 0.0], 20.0, 8);
+        mean_color(render_text(&(image + "[render]\nsamples = 64\n" + &objects + light)).film())[1]
+    };
+    let sun = "[[light]]\nsun = { toward = [0.2, 1, 0.1], irradiance = 3 }\n";
+    let in_sun = 0.5 / std::f64::consts::PI * 3.0 / f64::sqrt(1.05);
+    // 0.1 and 0.3 have no exact binary form, so the box begins a rounding error above or below the floor.
+    for height in [0.0, 0.1, 0.3, 1.0 / 3.0] {
+        for (is_seen, box_first) in [(false, false), (false, true), (true, false), (true, true)] {
+            // The photons that are seen through the box are a few thousand.
+            for (light, expected, tolerance) in [(sun, in_sun, 0.03), (&environment(1.0), 0.5, 1e-5)] {
+                let found = image(height, is_seen, box_first, light);
+                let off = found / expected - 1.0;
+                assert!(off.abs() < tolerance, "{height}, seen {is_seen}, first {box_first}: {found} for {expected}");
+            }
+        }
     }
 }
 

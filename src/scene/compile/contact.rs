@@ -15,8 +15,9 @@ const COMPARED_RAYS: u32 = 256;
 const MAX_SURFACES: usize = 4;
 
 /// Reports objects that share a surface. Clear bodies may overlap but not share a surface, since rounding would decide
-/// which of the two a ray hits. A flat lamp that lies in another surface may be invisible.
-pub(super) fn contacts(context: &mut Context, placed: &PlacedObjects) {
+/// which of the two a ray hits. Where a clear one lies on an opaque one, rays hit the opaque one. A flat lamp that lies
+/// in another surface may be invisible.
+pub(super) fn contacts(context: &mut Context, placed: &mut PlacedObjects) {
     for (first, second) in coinciding_pairs(placed) {
         let [body, other] = [first, second].map(|number| &placed.objects[number]);
         let (name, other_name) = (&body.name, &other.name);
@@ -26,19 +27,37 @@ pub(super) fn contacts(context: &mut Context, placed: &PlacedObjects) {
             placed.shapes[first.max(second)].advise::<()>(message, help);
             continue;
         }
-        context.warn(match is_flat_lamp(placed, body) {
-            true => {
-                format!(
-                    "a part of {name}, which emits light, lies exactly on {other_name}, which may hide it: move \
-                     it a little"
-                )
-            }
-            false => format!(
+        let contact = contact(placed, body, other);
+        context.warn(match contact {
+            Some(_) => format!(
+                "a part of the surface of {name} lies exactly on {other_name}, and there is no air between them: if \
+                 there should be some, move it a little"
+            ),
+            None if is_flat_lamp(placed, body) => format!(
+                "a part of {name}, which emits light, lies exactly on {other_name}, which may hide it: move it a little"
+            ),
+            None => format!(
                 "a part of the surface of {name} lies exactly on {other_name}, where light may miss it: move it a \
                  little, apart from the other or into it"
             ),
         });
+        for number in [first, second] {
+            let object = &mut placed.objects[number];
+            object.contact = object.contact.max(contact.unwrap_or_default());
+        }
     }
+}
+
+/// Returns the distance within which a clear and an opaque object that share a surface count as one there. `None` if
+/// light has to cross both.
+fn contact(placed: &PlacedObjects, one: &Object, another: &Object) -> Option<f64> {
+    let is_opaque = |object: &Object| {
+        let material = &placed.material(object).material;
+        material.medium().is_none() && !material.is_see_through()
+    };
+    let (clear, other) = if placed.is_clear(one) { (one, another) } else { (another, one) };
+    let size = clear.shape.bounds()?.size().length();
+    (placed.is_clear(clear) && is_opaque(other)).then_some(NEAR * size)
 }
 
 /// Returns whether an object is a lamp that has no inside.

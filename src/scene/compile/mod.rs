@@ -99,9 +99,9 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     context.meshes.clear();
     let objects = objects.unwrap_or_default();
     warn_about_namesakes(context, &objects);
-    let placed = placement::placed(objects, &materials);
+    let mut placed = placement::placed(objects, &materials);
     warn_about_unused(context, &placed, &drafts);
-    contact::contacts(context, &placed);
+    contact::contacts(context, &mut placed);
     let body_warnings = [inside_out::inside_out(&placed), hidden_bodies::swallowed(&placed)];
     body_warnings.into_iter().flatten().for_each(|warning| context.warn(warning));
     let mut has_environment = false;

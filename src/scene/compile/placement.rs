@@ -110,7 +110,9 @@ fn build_objects(draft: ObjectDraft, is_shared: bool, material: u32, varies: boo
             None => None,
         };
         let (shape, asset, group) = (Arc::new(shape), asset.clone(), group.clone());
-        Some(Object { name, asset, shape, material, light: None, coordinates, varies, group, visibility, relief })
+        // Later steps know which objects shine, and which share a surface with others.
+        let (light, contact) = (None, 0.0);
+        Some(Object { name, asset, shape, material, light, coordinates, varies, group, visibility, relief, contact })
     };
     let Some(instances) = instances else {
         let coordinates = Coordinates::new(&written.shape, &map.value);

@@ -7,10 +7,13 @@
 //! it: see `blur.rs`.
 //!
 //! Photons count, whatever object they lie on, if their surface continues the one around the place and is visible from
-//! a point above it. At edges, a part of the disc has no such surface, and the sum is divided by the share that has.
+//! a point above it. From that point, they are projected onto the disc in the tangent plane, so that those of a curved
+//! surface fill the disc as those of a flat one do.
+//! At edges, a part of the disc has no such surface, and the sum is divided by the share that has.
 //! The reciprocal of that share is the mean number of points of the disc that must be drawn until one lies on such a
 //! surface (Booth 2007, *Unbiased Monte Carlo Estimation of the Reciprocal of an Integral*): one, away from edges.
 
+use std::cell::OnceCell;
 use std::f64::consts::PI;
 
 use super::kernel::Kernel;
@@ -119,6 +122,15 @@ struct PhotonSearch<'a, const N: usize, P> {
     /// Whether light crosses the surface: then a surface close behind it is another one.
     crosses: bool,
     radius: f64,
+    /// The point above the place, once a photon asks for it.
+    eye: OnceCell<Eye>,
+}
+
+/// The point above a place that sees photons.
+#[derive(Clone, Copy)]
+struct Eye {
+    position: DVec3,
+    height: f64,
 }
 
 /// Returns what the sensor receives of the photons around a place that a path has reached; if `split`, photon by photon
@@ -144,6 +156,7 @@ pub fn gather<const N: usize, P: Polarization<N>>(
         is_front: interaction.flat.dot(interaction.point.normal) > 0.0,
         crosses,
         radius,
+        eye: OnceCell::new(),
     };
     let mut found = GatheredSum { sum: [0.0; 3], parts: split.then(Vec::new), weight: 0.0, drawn: None, u };
     photons.together.visit_near(position, radius, &mut |position, photon| {
@@ -276,11 +289,37 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         {
             return None;
         }
-        let (way, squared_radius) = (position - interaction.point.position, self.radius * self.radius);
-        let tangential = way - interaction.flat * way.dot(interaction.flat);
+        let (flat, eye, squared_radius) = (interaction.flat, self.eye(), self.radius * self.radius);
+        let way = position - interaction.point.position;
+        let elevation = way.dot(flat);
+        // How much farther from the eye its projection onto the disc is.
+        let stretch = eye.height / (eye.height - elevation);
+        if elevation >= eye.height || stretch * self.stretch() < 1.0 {
+            return None;
+        }
+        let projected = (way - flat * elevation) * stretch;
         // The Epanechnikov kernel, which integrates to 1 over the disc.
-        let kernel = 2.0 * (1.0 - tangential.length_squared() / squared_radius) / (PI * squared_radius);
-        Some(kernel * photon.flat.dot(interaction.flat).abs())
+        let kernel = 2.0 * (1.0 - projected.length_squared() / squared_radius) / (PI * squared_radius);
+        let sight = position - eye.position;
+        let area_ratio = stretch * stretch * (sight.dot(photon.flat) / sight.dot(flat)).abs();
+        (kernel > 0.0).then_some(kernel * area_ratio)
+    }
+
+    /// Returns the point above the place that sees photons.
+    fn eye(&self) -> Eye {
+        *self.eye.get_or_init(|| {
+            let GatherPoint { world, interaction, .. } = self.center;
+            let up = interaction.point.leave(interaction.flat);
+            let top = MAX_HEIGHT * self.radius;
+            let clearance = world.scene.nearest(&up, 2.0 * top, &|_| true).map_or(top, |hit| 0.5 * hit.intersection.t);
+            let position = up.at(top.min(clearance));
+            Eye { position, height: (position - interaction.point.position).dot(interaction.flat) }
+        })
+    }
+
+    /// Returns how far photons may lie from the eye, relative to their projections onto the disc.
+    fn stretch(&self) -> f64 {
+        1.0 + MAX_STEP * self.radius / self.eye().height
     }
 
     /// Whether a surface continues that of the place. `flat` is its unit normal on the side from which it is reached,
@@ -293,8 +332,8 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
             return false;
         }
         // A chord of a ball is perpendicular to the sum of the normals at its ends.
-        let normals = *own + flat * cos.signum();
-        0.5 * (position - point.position).dot(normals).abs() <= MAX_STEP * self.radius
+        let (chord, normals) = (position - point.position, *own + flat * cos.signum());
+        chord.length_squared() < self.radius * self.radius && 0.5 * chord.dot(normals).abs() <= MAX_STEP * self.radius
     }
 
     /// Returns the visible part of the sum, divided by the visible share of the disc, and how much polarization may
@@ -305,10 +344,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         let Some(chosen) = chosen else { return (sum, 0.0) };
         let weight_ratio = weight / chosen.weight;
         let mut polarization_change = weight_ratio * chosen.change * world.amount(chosen.rgb);
-        let up = interaction.point.leave(interaction.flat);
-        let top = MAX_HEIGHT * self.radius;
-        let clearance = world.scene.nearest(&up, 2.0 * top, &|_| true).map_or(top, |hit| 0.5 * hit.intersection.t);
-        let (height, from) = (top.min(clearance), up.at(top.min(clearance)));
+        let (from, stretch) = (self.eye().position, self.stretch());
         if !self.sees(from, chosen.position, 1.0).unwrap_or(true) {
             (0..3).for_each(|i| sum[i] -= chosen.rgb[i] * weight_ratio);
             if let Some(parts) = parts {
@@ -317,7 +353,6 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
             polarization_change = 0.0;
         }
         let frame = Frame::about(interaction.flat);
-        let stretch = (height + MAX_STEP * self.radius) / height;
         let mut drawn = 0;
         while drawn < MAX_POINTS {
             let [a, b, c, d] = sampler.get_random_4d(path.key.child(POINT_BRANCH), drawn);

@@ -82,12 +82,13 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         if let Some(audit) = &mut self.audit {
             audit.absorb(path, before, draw);
         }
-        let hit = hit?;
+        let surface_hit = SurfaceHit::new(self.world, &path.ray, hit?);
         if skips_hidden_media {
-            path.switch_media(self.world, draw, path.media.combined_with(&self.world.media_hidden_at(&path.ray, &hit)));
+            let hidden = self.world.media_hidden_at(&path.ray, &surface_hit.point);
+            path.switch_media(self.world, draw, path.media.combined_with(&hidden));
         }
-        path.last_primitive = Some(hit.primitive());
-        Some(SurfaceHit::new(self.world, &path.ray, hit))
+        path.last_primitive = Some(surface_hit.hit.primitive());
+        Some(surface_hit)
     }
 
     /// Returns what passes through the surface that a path has hit; `None` if nothing does.
