@@ -14,7 +14,8 @@ pub(super) enum Counted<'a> {
     Ordinary { film: DVec2, pdf: f64, highlights: &'a [SeenHighlight] },
     /// All light of a sample through a point of the lens. Light that samples aim at counts less.
     OfLens { place: DVec2, lights: SeenLensLights<'a> },
-    /// Light of a sample that was aimed at a highlight or at a light that the lens blurs: only what it shows, by this factor.
+    /// Light of a sample that was aimed at a highlight, or at a light that the lens blurs: only what it shows, by this
+    /// factor.
     Aimed { light: LightId, bounces: u32, factor: f64 },
 }
 

@@ -153,9 +153,6 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let is_first = path.surfaces() == 1 && first.is_none();
         let met = is_first.then(|| self.sample_first_hit(path, draw, sampler, &surface_hit, transmitted, first));
         self.receive(path, draw, EmitterHit::of_surface(world, draw, path, &surface_hit));
-        if self.sensor.counted.ends_after(path.bounces) {
-            return self.walker.pass_partly(path, point, transmitted);
-        }
         let surface = Surface { surface_hit: &surface_hit, boundary, transmitted, first: met, chance };
         if path.surfaces() > world.method.max_bounces {
             return self.end_at_limit(path, draw, sampler, &surface);
@@ -267,6 +264,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// Samples the lights where a surface scatters widely, and lets the path continue: its branches become pending.
     fn scatter(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
         let &Surface { surface_hit, boundary, transmitted, first, .. } = surface;
+        if self.sensor.counted.ends_after(path.bounces) {
+            return self.walker.pass_partly(path, &surface_hit.point, transmitted);
+        }
         let world = self.walker.world;
         if path.resampled && world.ends_light_paths(surface_hit.hit.object) {
             path.resampled = false;
