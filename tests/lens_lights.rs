@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use abbe::math::{DVec2, DVec3, sample_disk};
+use abbe::math::{DMat2, DVec2, DVec3, sample_disk};
 use abbe::plan::plan;
 use abbe::trace::Method;
 
@@ -66,7 +66,7 @@ fn films(text: &str) -> (Method, Mean) {
 #[test]
 fn bulbs_out_of_focus_have_all_their_light_wherever_they_are() {
     let radius = 0.004;
-    let (far, near, aside) = ([0.2, 0.3, -3.0], [-0.1, 0.05, 3.0], [1.3, -1.2, -3.0]);
+    let (far, near, aside) = ([0.2, 0.3, -3.0], [-0.1, 0.05, 3.0], [0.9, -0.8, -3.0]);
     let pane = "[material.pane]\nthin.index = 1.5\n[[object]]\nmaterial = \"pane\"\n\
                 shape.quad = { center = [0, 0, 0], u = [9, 0, 0], v = [0, 9, 0] }\n";
     let at = |camera: &str, film: &str, center| (view(camera, film, &bulb(center, radius)), center, 1.0);
@@ -124,6 +124,11 @@ fn aimed_samples_find_what_samples_of_the_whole_lens_find() {
     let tube = "[[object]]\nmaterial = \"lamp\"\n\
                 shape.quad = { center = [0, 0.2, -4], u = [0.6, 0.1, 0], v = [0, 0.04, 0] }\n";
     let many: String = (0..9).map(|i| bulb([0.12 * f64::from(i % 3), 0.12 * f64::from(i / 3), -3.0], 0.03)).collect();
+    let sun_behind = sun.replace("[0.1, 0.15, -1], angular_diameter = 1.2", "[0.5, 0.8, 0.7], angular_diameter = 4");
+    let ball = |material: &str| {
+        let shape = "shape.sphere = { center = [0, 0, -3], radius = 0.8 }";
+        format!("\n[material.ball]\n{material}\n[[object]]\nmaterial = \"ball\"\n{shape}\n")
+    };
     let in_part = bulb([0.2, 0.3, -3.0], 0.04) + &wall(2.0, 0.12);
     let cases = [
         ("a bulb", view(PERSPECTIVE, "", &bulb([0.2, 0.3, -3.0], 0.04)), 1..=1),
@@ -132,13 +137,19 @@ fn aimed_samples_find_what_samples_of_the_whole_lens_find() {
         ("the sun", view(PERSPECTIVE, "", sun), 1..=1),
         ("a tube", view(PERSPECTIVE, "", tube), 5..=16),
         ("many bulbs", view(PERSPECTIVE, "", &many), 9..=9),
+        (
+            "the sun in a chrome ball",
+            view(PERSPECTIVE, "", &(sun_behind.clone() + &ball("mirror.reflectance = 0.9"))),
+            1..=1,
+        ),
+        ("the sun in a glass ball", view(PERSPECTIVE, "", &(sun_behind + &ball("dielectric.index = 1.5"))), 1..=4),
     ];
     for (name, text, count) in &cases {
         let scene = scene(text);
         let method = plan(&scene).method;
         assert!(count.contains(&method.lens_lights.len()), "{name}: {} lights", method.lens_lights.len());
         let aimed = Mean::over_seeds(&films_of(&scene, &method, 0..32));
-        let plain = Method { lens_lights: Vec::new(), samples: 1024, ..method };
+        let plain = Method { lens_lights: Vec::new(), samples: 256, ..method };
         let plain = Mean::over_seeds(&films_of(&scene, &plain, 100..132));
         aimed.with_joint_error(&plain).assert_near(plain.value, 3 * cases.len(), name);
     }
@@ -174,19 +185,22 @@ fn no_light_is_left_to_the_samples_of_the_whole_lens() {
         let method = plan(&scene).method;
         let [light] = &method.lens_lights[..] else { panic!("{center:?}: {:?}", method.lens_lights) };
         let mut hits = 0;
+        let [to_lens, radii] = [light.per_pixel, light.radii].map(|columns| {
+            let [x, y] = columns.map(DVec2::from);
+            DMat2::from_cols(x, y)
+        });
+        let to_film = to_lens.inverse();
         for i in 0..200_000 {
             let [a, b, c, d] = [0.618_034, 0.754_878, 0.569_840, 0.819_173].map(|step| (f64::from(i) * step).fract());
             let place = sample_disk([a, b]) * LENS;
             // Points of the film that see places near the bulb through this point of the lens.
-            let near = 3.0 * light.radius / DVec2::from(light.per_pixel).abs();
-            let film = DVec2::from(light.center)
-                + place / DVec2::from(light.per_pixel)
-                + (2.0 * DVec2::new(c, d) - 1.0) * near;
+            let near = radii * (2.0 * DVec2::new(c, d) - 1.0) * 2.0;
+            let film = DVec2::from(light.center) + to_film * (place + near);
             let ray = scene.camera.ray_from_lens(film, place);
             let to_bulb = DVec3::from(center) - ray.origin;
             if to_bulb.cross(ray.direction).length() < radius {
-                let middle = (film - DVec2::from(light.center)) * DVec2::from(light.per_pixel);
-                assert!(place.distance(middle) < light.radius, "{camera}, {center:?}");
+                let middle = to_lens * (film - DVec2::from(light.center));
+                assert!((radii.inverse() * (place - middle)).length() < 1.0, "{camera}, {center:?}");
                 hits += 1;
             }
         }

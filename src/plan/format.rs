@@ -1,6 +1,6 @@
 //! Numbers as people say them.
 
-use crate::trace::{Effort, Highlight};
+use crate::trace::{Effort, SmallHighlights};
 
 /// Formats a share as people say it.
 pub(super) fn percent(share: f64) -> String {
@@ -52,30 +52,41 @@ pub(super) fn describe_effort(times: Effort) -> String {
 }
 
 /// Describes the small lights and highlights at which samples are aimed, if there are any.
-pub(super) fn highlights(found: &[Highlight]) -> Option<String> {
-    let lights = found.iter().filter(|highlight| highlight.bounces == 0).count();
-    let counted = |count: usize, thing: &str| match count {
+pub(super) fn highlights(found: &SmallHighlights) -> impl Iterator<Item = String> {
+    let SmallHighlights { on_film, on_lens } = found;
+    let on_film = counted(on_film.iter().map(|highlight| highlight.bounces)).map(|Counted { what, is_single }| {
+        let (are, their) = if is_single { ("is", "its") } else { ("are", "their") };
+        format!("{what} {are} smaller than a pixel: some samples of {their} pixels are aimed there")
+    });
+    let on_lens = counted(on_lens.iter().map(|light| light.bounces)).map(|Counted { what, is_single }| {
+        let what_is_seen = if is_single {
+            "it through the part of the lens that sees it"
+        } else {
+            "them through the parts of the lens that see them"
+        };
+        format!("{what} {} out of focus: some samples look at {what_is_seen}", if is_single { "is" } else { "are" })
+    });
+    on_film.into_iter().chain(on_lens)
+}
+
+/// Lights and highlights, counted.
+struct Counted {
+    what: String,
+    is_single: bool,
+}
+
+/// Counts lights, which have no bounces, and highlights; `None` if there are neither.
+fn counted(bounces: impl Iterator<Item = u32> + Clone) -> Option<Counted> {
+    let all = bounces.clone().count();
+    let lights = bounces.filter(|&bounces| bounces == 0).count();
+    let with_count = |count: usize, thing: &str| match count {
         0 => None,
         1 => Some(format!("1 {thing}")),
         _ => Some(format!("{count} {thing}s")),
     };
     let things: Vec<String> =
-        [counted(lights, "light"), counted(found.len() - lights, "highlight")].into_iter().flatten().collect();
-    let (are, their) = if found.len() == 1 { ("is", "its") } else { ("are", "their") };
-    let what = things.join(" and ");
-    (!found.is_empty())
-        .then(|| format!("{what} {are} smaller than a pixel: some samples of {their} pixels are aimed there"))
-}
-
-/// Describes the small lights that the lens blurs, if there are any.
-pub(super) fn lens_lights(count: usize) -> Option<String> {
-    match count {
-        0 => None,
-        1 => Some("1 light is out of focus: some samples look at it through the part of the lens that sees it".into()),
-        _ => Some(format!(
-            "{count} lights are out of focus: some samples look at them through the parts of the lens that see them"
-        )),
-    }
+        [with_count(lights, "light"), with_count(all - lights, "highlight")].into_iter().flatten().collect();
+    (all > 0).then(|| Counted { what: things.join(" and "), is_single: all == 1 })
 }
 
 /// Formats a time as people say it.
@@ -92,7 +103,7 @@ pub(super) fn format_duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::{describe_effort, format_duration, highlights, percent, percent_and_limit, percent_bound};
-    use crate::trace::{Effort, Highlight};
+    use crate::trace::{Effort, Highlight, LensLight, SmallHighlights};
 
     #[test]
     fn an_effort_is_that_of_pixels_unless_the_whole_is_asked_for() {
@@ -108,10 +119,17 @@ mod tests {
     fn lights_and_highlights_are_counted_apart() {
         let highlight =
             |bounces| Highlight { light: 0, bounces, center: [0.0; 2], radii: [[1.0, 0.0], [0.0, 1.0]], peak: 0.0 };
-        let described = |bounces: &[u32]| {
-            let line = highlights(&bounces.iter().map(|&bounces| highlight(bounces)).collect::<Vec<_>>());
-            line.map(|line| line.split_once(':').expect("it has two parts").0.to_owned())
+        let on_lens = |bounces| {
+            let (center, [per_pixel, radii]) = ([0.0; 2], [[[1.0, 0.0], [0.0, 1.0]]; 2]);
+            LensLight { light: 0, bounces, center, per_pixel, radii }
         };
+        let lines = |sharp: &[u32], blurred: &[u32]| -> Vec<String> {
+            let on_film = sharp.iter().map(|&bounces| highlight(bounces)).collect();
+            let on_lens = blurred.iter().map(|&bounces| on_lens(bounces)).collect();
+            let found = SmallHighlights { on_film, on_lens };
+            highlights(&found).map(|line| line.split_once(':').expect("it has two parts").0.to_owned()).collect()
+        };
+        let described = |bounces: &[u32]| lines(bounces, &[]).pop();
         assert_eq!(described(&[]), None);
         assert_eq!(described(&[0]).as_deref(), Some("1 light is smaller than a pixel"));
         assert_eq!(described(&[1, 2]).as_deref(), Some("2 highlights are smaller than a pixel"));

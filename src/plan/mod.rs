@@ -27,8 +27,8 @@ use crate::light::Light;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{
-    FIRST_LOOK, Method, PhotonCost, PhotonTimes, Probe, Transport, blurred_lights, bytes_of_film, photon_times,
-    prepare_unguided, probe, small_highlights,
+    FIRST_LOOK, Method, PhotonCost, PhotonTimes, Probe, Transport, bytes_of_film, photon_times, prepare_unguided,
+    probe, small_highlights,
 };
 use caustics::left_out_point_light;
 use format::{format_count, format_duration};
@@ -80,9 +80,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let unlit = prepare_unguided(scene, method);
     let highlights = small_highlights(&unlit);
     decisions.extend(format::highlights(&highlights));
-    let lens_lights = blurred_lights(&unlit);
-    decisions.extend(format::lens_lights(lens_lights.len()));
-    let unlit = unlit.with_highlights(highlights).with_lens_lights(lens_lights);
+    let unlit = unlit.with_highlights(highlights);
     let LitWorld { world, because, guided } = LitWorld::new(scene, &unlit);
     decisions.extend(because);
     let polarization = polarization::decide(scene, &world);

@@ -314,22 +314,6 @@ impl Camera {
         self.lens.map_or(0.0, |lens| lens.radius)
     }
 
-    /// Returns how far the point of the lens from which a point of the film sees a place moves across the lens, in
-    /// scene units, where the point of the film moves by one unit of the image window. `depth` is that of the place.
-    /// Where the place is in focus, the result is infinite.
-    pub fn lens_shift(&self, depth: f64) -> f64 {
-        let inverse_focus = self.lens.map_or(0.0, |lens| lens.inverse_focus);
-        match self.projection {
-            Projection::Orthographic { .. } => 1.0 / (depth * inverse_focus - 1.0),
-            _ => 1.0 / (inverse_focus - 1.0 / depth),
-        }
-    }
-
-    /// Returns the size of a pixel in the image window, to the right and up where the film runs to the right and down.
-    pub fn pixel_in_window(&self) -> DVec2 {
-        2.0 * self.half_size / self.size * DVec2::new(1.0, -1.0)
-    }
-
     /// Returns whether rays may start away from the camera's position.
     pub fn starts_away(&self) -> bool {
         self.near > 0.0 || self.has_lens() || matches!(self.projection, Projection::Orthographic { .. })

@@ -1,7 +1,7 @@
 //! Which light of a camera sample counts, where some samples are aimed at small lights.
 
 use super::highlight::{Highlight, SeenHighlight, density, density_of};
-use super::lens_light::SeenLensLights;
+use super::lens_light::{LensLight, LensPoint, SeenLensLights};
 use crate::film::Filter;
 use crate::light::LightId;
 use crate::math::DVec2;
@@ -47,9 +47,10 @@ impl<'a> Counted<'a> {
         (value != 0.0).then_some(Self::Aimed { light, bounces, factor })
     }
 
-    /// Returns what counts of a sample that looks at a light through a point of the lens.
-    pub fn through_lens(light: LightId, place: DVec2, lights: &SeenLensLights) -> Self {
-        Self::Aimed { light, bounces: 0, factor: lights.factor(light, place) }
+    /// Returns what counts of a sample that looks through a point of the lens at one of the lights.
+    pub fn through_lens(point: &LensPoint, lights: &SeenLensLights) -> Self {
+        let LensLight { light, bounces, .. } = *point.light;
+        Self::Aimed { light, bounces, factor: lights.factor(light, bounces, point.place) }
     }
 
     /// Whether the sample was aimed at a light.
@@ -74,8 +75,8 @@ impl<'a> Counted<'a> {
                 None => 1.0,
             },
             Self::OfLens { place, lights } => match source {
-                Some(light) if bounces == 0 => lights.factor(light, place),
-                _ => 1.0,
+                Some(light) => lights.factor(light, bounces, place),
+                None => 1.0,
             },
             Self::Aimed { light, bounces: mirrors, factor } if (source, bounces) == (Some(light), mirrors) => factor,
             Self::Aimed { .. } => 0.0,

@@ -1,6 +1,7 @@
-//! Small lights that the lens blurs: each point of the film sees such a light through a small disc of the lens.
+//! Small lights that the lens blurs, and their images in mirrors and glass: each point of the film sees such a light
+//! through a small part of the lens.
 //!
-//! Some samples of the film's points are aimed at these discs. Both kinds of samples find the same light, and the
+//! Some samples of the film's points are aimed at these parts. Both kinds of samples find the same light, and the
 //! balance heuristic weighs them (Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo
 //! Rendering*).
 
@@ -10,33 +11,63 @@ use std::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
 use super::highlight::MAX_AIMED;
+use crate::film::{Filter, Window};
 use crate::light::LightId;
-use crate::math::{DVec2, sample_disk};
+use crate::math::{DMat2, DVec2, sample_disk};
 
-/// A small light that the lens blurs, and the disc of the lens through which a point of the film sees it.
+/// A small light that the lens blurs, or its image in surfaces, and the ellipse of the lens through which a point of
+/// the film sees it. Places on the lens are in scene units to the right and up, those of the film in pixels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LensLight {
     /// The light that is seen.
     pub light: LightId,
-    /// The point of the film that sees it through the middle of the lens, in pixels from the top left corner of the
-    /// format.
+    /// The number of surfaces that mirror or refract it one after another.
+    pub bounces: u32,
+    /// The point of the film that sees it through the middle of the lens, from the top left corner of the format.
     pub center: [f64; 2],
-    /// How far the middle of the disc moves to the right and up, in scene units, where the point of the film moves by a
-    /// pixel to the right and down.
-    pub per_pixel: [f64; 2],
-    /// The radius of the disc in scene units.
-    pub radius: f64,
+    /// How far the middle of the ellipse moves on the lens where the point of the film moves by a pixel to the right,
+    /// and down.
+    pub per_pixel: [[f64; 2]; 2],
+    /// Two conjugate radii of the ellipse on the lens: a circle's radii after the linear map that makes it the ellipse.
+    pub radii: [[f64; 2]; 2],
 }
 
 impl LensLight {
-    /// Returns the middle of the disc through which a point of the film sees the light.
-    fn middle(&self, film: DVec2) -> DVec2 {
-        (film - DVec2::from(self.center)) * DVec2::from(self.per_pixel)
+    fn map(&self) -> DMat2 {
+        DMat2::from_cols(self.radii[0].into(), self.radii[1].into())
     }
 
-    /// Returns the half size of the blurred image on the film, in pixels.
+    /// Returns the middle of the ellipse through which a point of the film sees the light.
+    fn middle(&self, film: DVec2) -> DVec2 {
+        let [x, y] = self.per_pixel.map(DVec2::from);
+        let offset = film - DVec2::from(self.center);
+        x * offset.x + y * offset.y
+    }
+
+    /// Returns how far the ellipse reaches at most.
+    fn reach(&self) -> f64 {
+        let [x, y] = self.radii.map(DVec2::from);
+        x.length().hypot(y.length())
+    }
+
+    /// Returns whether samples of any pixel of a window may see it.
+    pub(super) fn is_seen_in(&self, window: Window, filter: Filter, lens_radius: f64) -> bool {
+        let half = self.half_size(lens_radius) + filter.reach();
+        let [first, end] = window.ends().map(|at| DVec2::from(at.map(|at| at as f64)));
+        let center = DVec2::from(self.center);
+        (center + half).cmpge(first).all() && (center - half).cmple(end).all()
+    }
+
+    /// Returns the share of the lens that the ellipse covers.
+    pub(super) fn share(&self, lens_radius: f64) -> f64 {
+        self.map().determinant().abs() / (lens_radius * lens_radius)
+    }
+
+    /// Returns half the size of a box around the blurred image on the film, in pixels.
     pub(super) fn half_size(&self, lens_radius: f64) -> DVec2 {
-        (lens_radius + self.radius) / DVec2::from(self.per_pixel).abs()
+        let [x, y] = self.per_pixel.map(DVec2::from);
+        let rows = DMat2::from_cols(x, y).inverse().transpose();
+        (lens_radius + self.reach()) * DVec2::new(rows.x_axis.length(), rows.y_axis.length())
     }
 }
 
@@ -82,7 +113,7 @@ fn block_of(film: DVec2) -> [i32; 2] {
     (film / BLOCK).floor().to_array().map(|at| at as i32)
 }
 
-/// The lights that a point of the film sees through discs of the lens.
+/// The lights that a point of the film sees through parts of the lens.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SeenLensLights<'a> {
     all: &'a LensLights,
@@ -96,13 +127,13 @@ pub(super) struct SeenLensLights<'a> {
 impl<'a> SeenLensLights<'a> {
     fn lights(&self) -> impl Iterator<Item = &'a LensLight> {
         let Self { all, film, .. } = *self;
-        let is_seen = move |light: &&LensLight| light.middle(film).length() < all.lens_radius + light.radius;
+        let is_seen = move |light: &&LensLight| light.middle(film).length() < all.lens_radius + light.reach();
         self.numbers.iter().map(|&number| &all.lights[number as usize]).filter(is_seen)
     }
 
-    /// Returns points of the lens from which a camera sample looks at the lights: at each, or at some of them if there
-    /// are many, each with the light. `u` are random numbers, the last of which chooses.
-    pub fn aimed(&self, [u, v, choice]: [f64; 3]) -> impl Iterator<Item = (LightId, DVec2)> {
+    /// Returns points of the lens from which a camera sample looks at the lights, with random numbers of which the last
+    /// one chooses: at each light, or at some of them if there are many.
+    pub fn aimed(&self, [u, v, choice]: [f64; 3]) -> impl Iterator<Item = LensPoint<'a>> {
         let Self { all, film, share, .. } = *self;
         let mut sum = choice;
         let chosen = self.lights().filter(move |_| {
@@ -111,18 +142,26 @@ impl<'a> SeenLensLights<'a> {
             sum.floor() > before.floor()
         });
         chosen
-            .map(move |light| (light.light, light.middle(film) + sample_disk([u, v]) * light.radius))
-            .filter(move |(_, place)| place.length() < all.lens_radius)
+            .map(move |light| LensPoint { light, place: light.middle(film) + light.map() * sample_disk([u, v]) })
+            .filter(move |point| point.place.length() < all.lens_radius)
     }
 
-    /// Returns the factor on what a light sends through a point of the lens, for samples that are aimed there as well
-    /// as for those of the whole lens.
-    pub fn factor(&self, light: LightId, place: DVec2) -> f64 {
-        let covers = |other: &&LensLight| {
-            other.light == light && place.distance_squared(other.middle(self.film)) < other.radius * other.radius
+    /// Returns the factor on what a light sends through a point of the lens after so many bounces, for samples that are
+    /// aimed there as well as for those of the whole lens.
+    pub fn factor(&self, light: LightId, bounces: u32, place: DVec2) -> f64 {
+        let density_of = |other: &LensLight| {
+            let map = other.map();
+            let offset = map.inverse() * (place - other.middle(self.film));
+            if offset.length_squared() < 1.0 { self.share / (PI * map.determinant().abs()) } else { 0.0 }
         };
-        let density = |radius: f64| 1.0 / (PI * radius * radius);
-        let own = density(self.all.lens_radius);
-        own / (own + self.lights().filter(covers).map(|light| self.share * density(light.radius)).sum::<f64>())
+        let own = 1.0 / (PI * self.all.lens_radius * self.all.lens_radius);
+        let shown = self.lights().filter(|other| (other.light, other.bounces) == (light, bounces));
+        own / (own + shown.map(density_of).sum::<f64>())
     }
+}
+
+/// A point of the lens from which a sample looks at a light.
+pub(super) struct LensPoint<'a> {
+    pub light: &'a LensLight,
+    pub place: DVec2,
 }

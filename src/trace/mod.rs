@@ -55,6 +55,7 @@ mod photon_targets;
 mod probe;
 mod received_light;
 mod replicates;
+mod small_highlights;
 mod spectrum_sample;
 mod stats;
 mod walk;
@@ -80,9 +81,10 @@ pub use photon::light_paths_reach;
 pub use photon_focus::Smoothness;
 pub use probe::{
     Adaptive, Branching, Effort, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, RoomLight, SampleWorth,
-    adaptive, blurred_lights, branching, gathered_worth, most_changed, photon_times, photons_within, photons_worth,
-    pilot_noise, piloted, polarization_error, prepare, prepare_unguided, probe, reached_places, room_light,
-    seen_photons, small_highlights, with_light_vertices,
+    adaptive, branching, gathered_worth, most_changed, photon_times, photons_within, photons_worth, pilot_noise,
+    piloted, polarization_error, prepare, prepare_unguided, probe, reached_places, room_light, seen_photons,
+    small_highlights, with_light_vertices,
 };
 pub use replicates::REPLICATES;
+pub use small_highlights::SmallHighlights;
 pub use world::World;

@@ -3,14 +3,14 @@ use std::sync::{Arc, OnceLock};
 use super::bright::{AimedSampler, BrightPlaces};
 use super::density::{Rate, SampleDensity};
 use super::dyes::Dyes;
-use super::highlight::{Highlight, Highlights};
+use super::highlight::Highlights;
 use super::layers::Layers;
-use super::lens_light::{LensLight, LensLights};
+use super::lens_light::LensLights;
 use super::media::{Media, media_of_lights};
 use super::path_start::{PathStart, SkyOpenings, SunlitPlaces};
 use super::photon_focus::places;
 use super::photon_targets::PhotonTargets;
-use super::{LightPass, Method, Polarizing, Transport};
+use super::{LightPass, Method, Polarizing, SmallHighlights, Transport};
 use crate::light::{Light, LightId, LightSampler, Opening};
 use crate::material::Lobes;
 use crate::math::{DVec3, Ray};
@@ -170,19 +170,12 @@ impl World {
         world
     }
 
-    /// Returns this world with some samples aimed at highlights.
+    /// Returns this world with some samples aimed at small lights and highlights.
     #[must_use]
-    pub fn with_highlights(mut self, highlights: Vec<Highlight>) -> Self {
-        self.highlights = Arc::new(Highlights::new(&highlights, self.scene.film.filter));
-        self.method.highlights = highlights;
-        self
-    }
-
-    /// Returns this world with some samples aimed at lights that the lens blurs.
-    #[must_use]
-    pub fn with_lens_lights(mut self, lens_lights: Vec<LensLight>) -> Self {
-        self.lens_lights = Arc::new(LensLights::new(&lens_lights, self.scene.camera.lens_radius()));
-        self.method.lens_lights = lens_lights;
+    pub fn with_highlights(mut self, SmallHighlights { on_film, on_lens }: SmallHighlights) -> Self {
+        self.highlights = Arc::new(Highlights::new(&on_film, self.scene.film.filter));
+        self.lens_lights = Arc::new(LensLights::new(&on_lens, self.scene.camera.lens_radius()));
+        (self.method.highlights, self.method.lens_lights) = (on_film, on_lens);
         self
     }
 

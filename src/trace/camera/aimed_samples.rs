@@ -48,9 +48,9 @@ pub fn add_aimed_through_lens<const N: usize, P: Polarization<N>>(
     let world = tracer.walker.world;
     let camera = &world.scene.camera;
     let [u, v, choice, _] = sampler.get_4d(BranchKey::CAMERA, dimensions::HIGHLIGHT);
-    let samples = lights.aimed([u, v, choice]).map(|(light, place)| AimedSample {
-        ray: camera.ray_from_lens(film, place),
-        counted: Counted::through_lens(light, place, lights),
+    let samples = lights.aimed([u, v, choice]).map(|point| AimedSample {
+        ray: camera.ray_from_lens(film, point.place),
+        counted: Counted::through_lens(&point, lights),
     });
     add_samples(tracer, draw, sampler, samples);
 }

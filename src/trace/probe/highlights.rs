@@ -16,7 +16,8 @@ use crate::math::{DMat2, DVec2, DVec3, Frame};
 use crate::scene::RayEnds;
 use crate::spectrum::Table;
 use crate::trace::highlight::{Highlight, rim};
-use crate::trace::{RAYS_OF_A_LOOK, Transport, World};
+use crate::trace::lens_light::LensLight;
+use crate::trace::{RAYS_OF_A_LOOK, SmallHighlights, Transport, World};
 
 /// Points along the longer side of the format at which the search for what a first surface mirrors begins, and how
 /// much wider apart they are for longer chains of surfaces.
@@ -45,17 +46,26 @@ const MAX_HALF_AXIS: f64 = 16.0;
 const MARGINS: [f64; 11] = [1.0003, 1.001, 1.003, 1.006, 1.012, 1.025, 1.05, 1.1, 1.2, 1.4, 1.8];
 /// Radii of the rings on which points are looked at if something occludes the center of an image, relative to its own.
 const RINGS: [f64; 2] = [0.5, 0.9];
+/// Points of the lens through which images are looked at, as a share of its radius.
+const LENS_ARM: f64 = 0.7;
+/// Factor by which the part of the lens that sees an image is larger than measured, and the largest factor that images
+/// seen through other points of the lens may require.
+const LENS_MARGIN: f64 = 1.03;
+const MAX_LENS_MARGIN: f64 = 3.0;
+/// Largest share of the lens that such a part may have: samples of the whole lens hit a larger one often.
+const MAX_LENS_SHARE: f64 = 0.25;
 /// Half width of the ellipse of a rough surface's highlight, in widths of its slopes. With this half width W, a
 /// share of 1 / (1 + W^2) of the light lies beyond.
 const ROUGH_HALF_WIDTH: f64 = 6.0;
 
 /// Returns the highlights of the format that are smaller than a pixel, whatever part of it is rendered.
-pub fn small_highlights(world: &World) -> Vec<Highlight> {
+pub fn small_highlights(world: &World) -> SmallHighlights {
     let scene = &world.scene;
     let is_random = matches!(world.method.transport, Transport::Random { .. });
-    let is_sharp = !scene.camera.has_lens() && scene.film.filter != Filter::Center;
-    if !is_random || !is_sharp || world.has_mattes {
-        return Vec::new();
+    // Points of the film that are all in the middle of a pixel cannot be aimed, but points of the lens can.
+    let can_aim = scene.camera.has_lens() || scene.film.filter != Filter::Center;
+    if !is_random || !can_aim || world.has_mattes {
+        return SmallHighlights::default();
     }
     let small_lights = SmallLights::new(world, MAX_HIGHLIGHTS);
     let slopes: Vec<Option<f64>> = scene.materials.iter().map(|named| slopes(&named.material)).collect();
@@ -64,13 +74,13 @@ pub fn small_highlights(world: &World) -> Vec<Highlight> {
     let chain_of = |events| SpecularChain { world, events, slopes: &slopes };
     let no_surfaces = Search::new(chain_of(&[]), step);
     let searched = small_lights.in_parts(MAX_HIGHLIGHTS).take_while(|_| no_surfaces.rays.get() < RAYS_OF_A_LOOK);
-    let mut found: Vec<Highlight> =
+    let mut found: Vec<Found> =
         searched.filter_map(|light| no_surfaces.seen_light(&light)).take(MAX_HIGHLIGHTS).collect();
     let lights: Vec<SmallLight> = small_lights.in_parts(MAX_LIGHTS).take(MAX_LIGHTS).collect();
-    if lights.is_empty() || slopes.iter().all(Option::is_none) {
-        return found;
-    }
-    let chains: Vec<SpecularChain> = CHAINS.map(chain_of).into_iter().filter(SpecularChain::is_possible).collect();
+    let chains = match lights.is_empty() || slopes.iter().all(Option::is_none) {
+        true => Vec::new(),
+        false => CHAINS.map(chain_of).into_iter().filter(SpecularChain::is_possible).collect(),
+    };
     let mut rays = RAYS_OF_A_LOOK;
     for chain in chains {
         let step = if chain.events.len() == 1 { step } else { LONG_CHAIN_STEP * step };
@@ -79,7 +89,25 @@ pub fn small_highlights(world: &World) -> Vec<Highlight> {
         search.add_highlights(&lights, rays / 2, &mut found);
         rays = rays.saturating_sub(search.rays.get());
     }
-    found
+    let (on_lens, on_film): (Vec<_>, Vec<_>) = found.into_iter().partition(|found| found.on_lens.is_some());
+    SmallHighlights {
+        on_film: on_film.into_iter().map(|found| found.highlight).collect(),
+        on_lens: on_lens.into_iter().filter_map(|found| found.on_lens).collect(),
+    }
+}
+
+/// A highlight as the middle of the lens sees it and, if there is a lens, what the lens makes of it.
+struct Found {
+    highlight: Highlight,
+    on_lens: Option<LensLight>,
+}
+
+/// The image of a light's center through a point of the lens.
+struct Image {
+    film: DVec2,
+    end: ChainEnd,
+    /// The change of the place on the film with the difference of the vectors that are compared.
+    inverse_jacobian: DMat2,
 }
 
 /// Returns the width of a material's slopes, 0 if any part of it is smooth; `None` if it mirrors nothing sharply.
@@ -127,7 +155,7 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the highlight that is the light itself, if the camera sees it.
-    fn seen_light(&self, light: &SmallLight) -> Option<Highlight> {
+    fn seen_light(&self, light: &SmallLight) -> Option<Found> {
         let scene = &self.chain.world.scene;
         if light.object.is_some_and(|object| !scene.is_seen(object)) {
             return None;
@@ -138,17 +166,23 @@ impl<'a> Search<'a> {
             Place::Near(ball) => ball.center,
         };
         let film = camera.see(point, [0.5; 2])?.film;
-        let highlight = self.follow(film, &self.chain.trace(film)?, light)?;
-        highlight.is_seen_in(scene.film.whole(), scene.film.filter).then_some(highlight)
+        let found = self.follow(film, &self.chain.trace(film, DVec2::ZERO)?, light)?;
+        let (window, filter) = (scene.film.whole(), scene.film.filter);
+        let is_seen = match &found.on_lens {
+            None => found.highlight.is_seen_in(window, filter),
+            Some(on_lens) => on_lens.is_seen_in(window, filter, camera.lens_radius()),
+        };
+        is_seen.then_some(found)
     }
 
     /// Adds the highlights of some lights that are not known yet, as far as about `rays` rays lead. Each light may take
     /// an equal share of what those before it have left.
-    fn add_highlights(&self, lights: &[SmallLight], rays: u64, found: &mut Vec<Highlight>) {
+    fn add_highlights(&self, lights: &[SmallLight], rays: u64, found: &mut Vec<Found>) {
         let film = self.chain.world.scene.film;
         let [columns, rows] = [film.width, film.height].map(|size| (f64::from(size) / self.step).ceil() as usize);
         let film_point = |i: usize| DVec2::new((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5) * self.step;
-        let ends: Vec<Option<ChainEnd>> = (0..columns * rows).map(|i| self.chain.trace(film_point(i))).collect();
+        let ends: Vec<Option<ChainEnd>> =
+            (0..columns * rows).map(|i| self.chain.trace(film_point(i), DVec2::ZERO)).collect();
         if ends.iter().all(Option::is_none) {
             return;
         }
@@ -175,15 +209,21 @@ impl<'a> Search<'a> {
                 if found.len() == MAX_HIGHLIGHTS || self.rays.get() >= max_rays {
                     break;
                 }
-                let highlight = ends[i].as_ref().and_then(|end| self.follow(film_point(i), end, light));
-                found.extend(highlight.filter(|new| !found.iter().any(|known| is_same(known, new))));
+                let new = ends[i].as_ref().and_then(|end| self.follow(film_point(i), end, light));
+                let is_known = |new: &Found| found.iter().any(|known| is_same(&known.highlight, &new.highlight));
+                found.extend(new.filter(|new| !is_known(new)));
             }
         }
     }
 
-    /// Follows the image of a light from a point of the film to its center. Returns the highlight there if it is small.
-    fn follow(&self, start: DVec2, near: &ChainEnd, light: &SmallLight) -> Option<Highlight> {
-        let trace = |film: DVec2| self.trace_like(film, near);
+    /// Follows the image of a light from a point of the film to its center. Returns what is found there if it is small.
+    fn follow(&self, start: DVec2, near: &ChainEnd, light: &SmallLight) -> Option<Found> {
+        self.found(&self.image(DVec2::ZERO, start, near, light)?, light)
+    }
+
+    /// Follows the image of a light through a point of the lens from a point of the film to its center.
+    fn image(&self, place: DVec2, start: DVec2, near: &ChainEnd, light: &SmallLight) -> Option<Image> {
+        let trace = |film: DVec2| self.trace_like(film, place, near);
         let (mut film, mut end) = (start, trace(start)?);
         for _ in 0..MAX_NEWTON_STEPS {
             let Mismatch { target, difference } = Mismatch::of(light, &end);
@@ -197,9 +237,8 @@ impl<'a> Search<'a> {
             if !inverse_jacobian.is_finite() {
                 return None;
             }
-            let width = self.width(&end, light);
-            if current.length() <= TOLERANCE * width {
-                return self.highlight(film - inverse_jacobian * current, &end, light, inverse_jacobian);
+            if current.length() <= TOLERANCE * self.width(&end, light) {
+                return Some(Image { film: film - inverse_jacobian * current, end, inverse_jacobian });
             }
             let mut step = (inverse_jacobian * -current).clamp_length_max(4.0 * self.step);
             let is_nearer = |next: &ChainEnd| Mismatch::of(light, next).difference.length() < difference.length();
@@ -213,10 +252,11 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Follows the ray of a point of the film; `None` if other things become of it than of another.
-    fn trace_like(&self, film: DVec2, other: &ChainEnd) -> Option<ChainEnd> {
+    /// Follows the ray of a point of the film and a point of the lens; `None` if other things become of it than of
+    /// another.
+    fn trace_like(&self, film: DVec2, place: DVec2, other: &ChainEnd) -> Option<ChainEnd> {
         self.rays.set(self.rays.get() + 1);
-        self.chain.trace(film).filter(|end| end.objects == other.objects)
+        self.chain.trace(film, place).filter(|end| end.objects == other.objects)
     }
 
     /// Returns the half width of a highlight, as a difference of the vectors that [`Mismatch`] compares.
@@ -235,54 +275,109 @@ impl<'a> Search<'a> {
             Mismatch::of(light, &end).difference.length() < sin
         };
         let contains_image = |margin: &&f64| {
-            rim().all(|point| !self.trace_like(film + radii * (point * **margin), center).is_some_and(is_lit))
+            rim().all(|point| {
+                !self.trace_like(film + radii * (point * **margin), DVec2::ZERO, center).is_some_and(is_lit)
+            })
         };
         *MARGINS.iter().find(contains_image).unwrap_or(&MARGINS[MARGINS.len() - 1])
     }
 
-    /// Returns whether the center of a highlight shows its light, or other points of it do. `radii` are those of the
-    /// light's image around a point of the film.
-    fn is_unoccluded(&self, film: DVec2, center: &ChainEnd, light: &SmallLight, radii: DMat2) -> bool {
+    /// Returns whether a surface shows a light that nothing occludes.
+    fn shows_light(&self, end: &ChainEnd, light: &SmallLight) -> bool {
         let world = self.chain.world;
         let is_from_camera = self.chain.bounces() == 0;
         let counts = |object| !world.is_see_through(object) && (!is_from_camera || world.scene.is_seen(object));
         let ends = RayEnds { light: light.object, ..RayEnds::default() };
-        let shows_light = |end: &ChainEnd| {
-            let ApparentLight { direction, distance, .. } = light.seen_from(end.point.position);
-            let ray = end.point.leave(if end.slopes == 0.0 { end.outgoing } else { direction });
-            !world.scene.is_occluded_by(&ray, distance, ends, &Cell::new(None), &counts)
-        };
-        let rings = RINGS.into_iter().flat_map(|ring| rim().map(move |point| point * ring));
-        let mut others = rings.filter_map(|point| self.trace_like(film + radii * point, center));
-        shows_light(center) || others.any(|end| shows_light(&end))
+        let ApparentLight { direction, distance, .. } = light.seen_from(end.point.position);
+        let ray = end.point.leave(if end.slopes == 0.0 { end.outgoing } else { direction });
+        !world.scene.is_occluded_by(&ray, distance, ends, &Cell::new(None), &counts)
     }
 
-    /// Returns the highlight at a point of the film, if it is small and shows its light. `inverse_jacobian`
-    /// is the change of the place on the film with the difference of the vectors that are compared.
-    fn highlight(&self, film: DVec2, end: &ChainEnd, light: &SmallLight, inverse_jacobian: DMat2) -> Option<Highlight> {
+    /// Returns whether the center of a highlight shows its light, or other points of it do. `radii` are those of the
+    /// light's image.
+    fn is_unoccluded(&self, image: &Image, light: &SmallLight, radii: DMat2) -> bool {
+        let rings = RINGS.into_iter().flat_map(|ring| rim().map(move |point| point * ring));
+        let trace = |point: DVec2| self.trace_like(image.film + radii * point, DVec2::ZERO, &image.end);
+        let mut others = rings.filter_map(trace);
+        self.shows_light(&image.end, light) || others.any(|end| self.shows_light(&end, light))
+    }
+
+    /// Returns the highlight at the image of a light, if it is small and shows its light.
+    fn found(&self, image: &Image, light: &SmallLight) -> Option<Found> {
+        let Image { film, end, inverse_jacobian } = image;
         let ApparentLight { direction, sin, .. } = light.seen_from(end.point.position);
         let width = self.width(end, light);
-        let is_small = PI * width * width * inverse_jacobian.determinant().abs() < MAX_AREA;
+        let radii = *inverse_jacobian * width;
+        let has_lens = self.chain.world.scene.camera.has_lens();
+        let is_small = has_lens || PI * radii.determinant().abs() < MAX_AREA;
         let is_on_that_side = direction.dot(end.normal) * end.outgoing.dot(end.normal) > 0.0;
         if width == 0.0 || sin >= MAX_HALF_ANGLE || !is_small || !is_on_that_side {
             return None;
         }
-        let image = inverse_jacobian * width;
-        if !self.is_unoccluded(film, end, light, image) {
+        if !has_lens && !self.is_unoccluded(image, light, radii) {
             return None;
         }
         let (reach, peak) = match end.slopes {
-            0.0 => (self.margin(film, end, light, image), 0.0),
+            0.0 => (self.margin(*film, end, light, radii), 0.0),
             _ => (ROUGH_HALF_WIDTH, ROUGH_HALF_WIDTH * ROUGH_HALF_WIDTH),
         };
         let highlight = Highlight {
             light: light.id,
             bounces: self.chain.bounces(),
             center: film.to_array(),
-            radii: (image * reach).to_cols_array_2d(),
+            radii: (radii * reach).to_cols_array_2d(),
             peak,
         };
-        (highlight.longest_half_axis() < MAX_HALF_AXIS).then_some(highlight)
+        if has_lens {
+            let on_lens = Some(self.on_lens(image, light, radii * reach)?);
+            return Some(Found { highlight, on_lens });
+        }
+        (highlight.longest_half_axis() < MAX_HALF_AXIS).then_some(Found { highlight, on_lens: None })
+    }
+
+    /// Returns the part of the lens that sees an image with some `radii` on the film from each point of the film, if
+    /// that part is small, and some of the image is shown.
+    ///
+    /// The image moves over the film as the point of the lens moves. For lights themselves, this map is affine.
+    fn on_lens(&self, image: &Image, light: &SmallLight, radii: DMat2) -> Option<LensLight> {
+        if image.end.slopes != 0.0 {
+            return None;
+        }
+        let lens_radius = self.chain.world.scene.camera.lens_radius();
+        let through = |place: DVec2| Some((place, self.image(place, image.film, &image.end, light)?));
+        let arms =
+            [DVec2::X, DVec2::Y].map(|axis| [1.0, -1.0].map(|sign| through(axis * (sign * LENS_ARM * lens_radius))));
+        // From both sides, or from one and the middle.
+        let column = |[one, other]: &[Option<(DVec2, Image)>; 2]| {
+            let middle = (DVec2::ZERO, image.film);
+            let [a, b] = [one, other].map(|arm| arm.as_ref().map_or(middle, |(place, image)| (*place, image.film)));
+            let length = (a.0 - b.0).length();
+            (length > 0.0).then(|| (a.1 - b.1) / length)
+        };
+        let moves = DMat2::from_cols(column(&arms[0])?, column(&arms[1])?);
+        let per_pixel = moves.inverse();
+        let images: Vec<(DVec2, Image)> = arms.into_iter().flatten().flatten().collect();
+        let is_shown =
+            self.shows_light(&image.end, light) || images.iter().any(|(_, image)| self.shows_light(&image.end, light));
+        if !per_pixel.is_finite() || !is_shown {
+            return None;
+        }
+        // How far images lie from where the affine map has them, and how much larger they are, in radii.
+        let to_radii = radii.inverse();
+        let margin = |(place, other): &(DVec2, Image)| {
+            let bend = to_radii * (other.film - image.film - moves * *place) / (LENS_ARM * LENS_ARM);
+            let size = to_radii * (other.inverse_jacobian * self.width(&other.end, light));
+            bend.length() + (size.x_axis.length_squared() + size.y_axis.length_squared()).sqrt() * 0.5_f64.sqrt()
+        };
+        let margin = images.iter().map(margin).fold(1.0, f64::max);
+        let found = LensLight {
+            light: light.id,
+            bounces: self.chain.bounces(),
+            center: image.film.to_array(),
+            per_pixel: per_pixel.to_cols_array_2d(),
+            radii: (per_pixel * radii * (LENS_MARGIN * margin)).to_cols_array_2d(),
+        };
+        (found.share(lens_radius) < MAX_LENS_SHARE && margin < MAX_LENS_MARGIN).then_some(found)
     }
 }
 
@@ -324,7 +419,7 @@ mod tests {
             let search = Search::new(SpecularChain { world: &world, events: CHAINS[0], slopes: &slopes }, 0.5);
             let mut found = Vec::new();
             search.add_highlights(&lights, rays, &mut found);
-            let of_light = |light: &SmallLight| found.iter().filter(|highlight| highlight.light == light.id).count();
+            let of_light = |light: &SmallLight| found.iter().filter(|found| found.highlight.light == light.id).count();
             (lights.iter().map(of_light).collect::<Vec<_>>(), search.rays.get())
         };
         let (all, rays) = search(RAYS_OF_A_LOOK);
