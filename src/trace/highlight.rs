@@ -62,9 +62,7 @@ impl Highlight {
 
     /// Returns the longest half axis of the ellipse, in pixels.
     pub(super) fn longest_half_axis(&self) -> f64 {
-        // A linear map of the plane is a sum of two: one turns and scales, the other does so after a reflection.
-        let [x, y] = self.radii.map(DVec2::from);
-        0.5 * ((x - y.perp()).length() + (x + y.perp()).length())
+        longest_half_axis(self.map())
     }
 
     /// Returns whether a point of the film lies in the ellipse.
@@ -86,6 +84,14 @@ impl Highlight {
         let side = |axis: usize, sign: f64| (self.center[axis] + sign * half_extent(axis)).floor() as i32;
         [-1.0, 1.0].map(|sign| [0, 1].map(|axis| side(axis, sign)))
     }
+}
+
+/// Returns the longest half axis of the ellipse that a linear map makes of the unit circle.
+///
+/// A linear map of the plane is a sum of two: one turns and scales, the other does so after a reflection.
+pub(super) fn longest_half_axis(map: DMat2) -> f64 {
+    let DMat2 { x_axis: x, y_axis: y } = map;
+    0.5 * ((x - y.perp()).length() + (x + y.perp()).length())
 }
 
 /// The density of a highlight at a point of the film, and the point of the unit square that is mapped to it.

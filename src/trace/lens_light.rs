@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::highlight::MAX_AIMED;
+use super::highlight::{MAX_AIMED, longest_half_axis};
 use crate::film::{Filter, Window};
 use crate::light::LightId;
 use crate::math::{DMat2, DVec2, sample_disk};
@@ -46,8 +46,7 @@ impl LensLight {
 
     /// Returns how far the ellipse reaches at most.
     fn reach(&self) -> f64 {
-        let [x, y] = self.radii.map(DVec2::from);
-        x.length().hypot(y.length())
+        longest_half_axis(self.map())
     }
 
     /// Returns whether samples of any pixel of a window may see it.

@@ -41,6 +41,7 @@ mod dyes;
 mod first_lobe;
 mod guide;
 mod highlight;
+mod highlight_set;
 mod image;
 mod layers;
 mod lens_light;
@@ -55,7 +56,6 @@ mod photon_targets;
 mod probe;
 mod received_light;
 mod replicates;
-mod small_highlights;
 mod spectrum_sample;
 mod stats;
 mod walk;
@@ -68,6 +68,7 @@ pub use budget::RAYS_OF_A_LOOK;
 pub use density::SampleDensity;
 pub use dispersion::{COLORS_NM, Dispersion, ROUTES_NM, Route, RouteEvent, SEEN_PIXELS, Step, dispersion, routes};
 pub use highlight::Highlight;
+pub use highlight_set::SmallHighlights;
 pub use image::{
     Advance, Estimate, FIRST_LOOK, Measured, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored,
     Stopped, TileNoise, bytes_of_film, render,
@@ -86,5 +87,4 @@ pub use probe::{
     small_highlights, with_light_vertices,
 };
 pub use replicates::REPLICATES;
-pub use small_highlights::SmallHighlights;
 pub use world::World;

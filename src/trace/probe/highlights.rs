@@ -15,7 +15,7 @@ use crate::material::{Lobes, Material};
 use crate::math::{DMat2, DVec2, DVec3, Frame};
 use crate::scene::RayEnds;
 use crate::spectrum::Table;
-use crate::trace::highlight::{Highlight, rim};
+use crate::trace::highlight::{Highlight, longest_half_axis, rim};
 use crate::trace::lens_light::LensLight;
 use crate::trace::{RAYS_OF_A_LOOK, SmallHighlights, Transport, World};
 
@@ -362,12 +362,13 @@ impl<'a> Search<'a> {
         if !per_pixel.is_finite() || !is_shown {
             return None;
         }
-        // How far images lie from where the affine map has them, and how much larger they are, in radii.
+        // How far images lie from where the affine map has them, and how much larger they are, in radii. Both are taken
+        // to grow toward the rim of the lens.
         let to_radii = radii.inverse();
         let margin = |(place, other): &(DVec2, Image)| {
-            let bend = to_radii * (other.film - image.film - moves * *place) / (LENS_ARM * LENS_ARM);
+            let bend = to_radii * (other.film - image.film - moves * *place);
             let size = to_radii * (other.inverse_jacobian * self.width(&other.end, light));
-            bend.length() + (size.x_axis.length_squared() + size.y_axis.length_squared()).sqrt() * 0.5_f64.sqrt()
+            1.0 + (bend.length() + (longest_half_axis(size) - 1.0).max(0.0)) / (LENS_ARM * LENS_ARM)
         };
         let margin = images.iter().map(margin).fold(1.0, f64::max);
         let found = LensLight {

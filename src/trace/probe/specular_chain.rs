@@ -91,8 +91,8 @@ impl SpecularChain<'_> {
         self.events.iter().filter(|event| **event != Event::Pass).count() as u32
     }
 
-    /// Follows the ray of a point of the film and a point of the lens; `None` if other things become of it, or if a surface before the last is
-    /// rough.
+    /// Follows the ray of a point of the film and a point of the lens; `None` if other things become of it, or if a
+    /// surface before the last is rough.
     pub fn trace(&self, film: DVec2, place: DVec2) -> Option<ChainEnd> {
         let scene = &self.world.scene;
         let mut ray = scene.camera.ray_from_lens(film, place);
