@@ -14,6 +14,7 @@ use super::highlight::{MAX_AIMED, longest_half_axis};
 use crate::film::{Filter, Window};
 use crate::light::LightId;
 use crate::math::{DMat2, DVec2, sample_disk};
+use crate::scene::FilmSettings;
 
 /// A small light that the lens blurs, or its image in surfaces, and the ellipse of the lens through which a point of
 /// the film sees it. Places on the lens are in scene units to the right and up, those of the film in pixels.
@@ -51,8 +52,8 @@ impl LensLight {
 
     /// Returns whether samples of any pixel of a window may see it.
     pub(super) fn is_seen_in(&self, window: Window, filter: Filter, lens_radius: f64) -> bool {
-        let half = self.half_size(lens_radius) + filter.reach();
-        let [first, end] = window.ends().map(|at| DVec2::from(at.map(|at| at as f64)));
+        let half = self.half_size(lens_radius);
+        let [first, end] = ends_of_samples(window, filter);
         let center = DVec2::from(self.center);
         (center + half).cmpge(first).all() && (center - half).cmple(end).all()
     }
@@ -83,11 +84,14 @@ pub(super) struct LensLights {
 }
 
 impl LensLights {
-    pub fn new(lights: &[LensLight], lens_radius: f64) -> Self {
+    /// Sorts the lights into blocks of a film with a lens of some radius.
+    pub fn new(lights: &[LensLight], lens_radius: f64, film: &FilmSettings) -> Self {
         let mut blocks: HashMap<[i32; 2], Vec<u32>> = HashMap::new();
+        let [low, high] = ends_of_samples(film.whole(), film.filter);
         for (number, light) in (0..).zip(lights) {
             let half = light.half_size(lens_radius);
-            let [first, last] = [-half, half].map(|offset| block_of(DVec2::from(light.center) + offset));
+            let [first, last] =
+                [-half, half].map(|offset| block_of((DVec2::from(light.center) + offset).clamp(low, high)));
             for block in (first[1]..=last[1]).flat_map(|y| (first[0]..=last[0]).map(move |x| [x, y])) {
                 blocks.entry(block).or_default().push(number);
             }
@@ -106,6 +110,12 @@ impl LensLights {
         let count = seen.lights().count();
         (count > 0).then(|| SeenLensLights { share: (MAX_AIMED / count as f64).min(1.0), ..seen })
     }
+}
+
+/// Returns the first and the last points of the film from which samples of a window come.
+fn ends_of_samples(window: Window, filter: Filter) -> [DVec2; 2] {
+    let [first, end] = window.ends().map(|at| DVec2::from(at.map(|at| at as f64)));
+    [first - filter.reach(), end + filter.reach()]
 }
 
 fn block_of(film: DVec2) -> [i32; 2] {

@@ -100,7 +100,7 @@ impl World {
         let bright = method.bright.as_ref().map(AimedSampler::new);
         let path_starts = if method.light_vertices { path_starts(&scene, &method) } else { Arc::new([]) };
         let highlights = Arc::new(Highlights::new(&method.highlights, scene.film.filter));
-        let lens_lights = Arc::new(LensLights::new(&method.lens_lights, scene.camera.lens_radius()));
+        let lens_lights = Arc::new(LensLights::new(&method.lens_lights, scene.camera.lens_radius(), &scene.film));
         let mut world = Self {
             waves: method.basis.waves(),
             layers,
@@ -174,7 +174,7 @@ impl World {
     #[must_use]
     pub fn with_highlights(mut self, SmallHighlights { on_film, on_lens }: SmallHighlights) -> Self {
         self.highlights = Arc::new(Highlights::new(&on_film, self.scene.film.filter));
-        self.lens_lights = Arc::new(LensLights::new(&on_lens, self.scene.camera.lens_radius()));
+        self.lens_lights = Arc::new(LensLights::new(&on_lens, self.scene.camera.lens_radius(), &self.scene.film));
         (self.method.highlights, self.method.lens_lights) = (on_film, on_lens);
         self
     }

@@ -1,5 +1,5 @@
 //! Finds the highlights on the film that are smaller than a pixel: small lights that the camera sees, or that surfaces
-//! mirror or refract to it.
+//! mirror or refract to it. If there is a lens, finds those that it blurs instead.
 //!
 //! Rays from the film are followed along a few chains of surfaces. The search starts where the last surface nearly
 //! sends the ray to a light, and follows the film to such a point by Newton's method, as manifold exploration does
@@ -58,7 +58,7 @@ const MAX_LENS_SHARE: f64 = 0.25;
 /// share of 1 / (1 + W^2) of the light lies beyond.
 const ROUGH_HALF_WIDTH: f64 = 6.0;
 
-/// Returns the highlights of the format that are smaller than a pixel, whatever part of it is rendered.
+/// Returns the highlights of the format that are smaller than a pixel, or that a lens blurs, whatever part of it is rendered.
 pub fn small_highlights(world: &World) -> SmallHighlights {
     let scene = &world.scene;
     let is_random = matches!(world.method.transport, Transport::Random { .. });
