@@ -19,15 +19,18 @@ pub struct LampPart {
 const MAX_SHARE: f64 = 0.7;
 /// How often a lamp is halved at most.
 const MAX_HALVINGS: u32 = 10;
-/// Most triangles of a lamp that is halved.
-const MAX_TRIANGLES: u32 = 1 << 18;
-/// Surface area of triangles that fill their ball well, in multiples of the area that the ball covers. A sphere has 4.
+/// Most pieces of a lamp that is halved.
+const MAX_PIECES: usize = 1 << 18;
+/// Surface area of pieces that fill their ball well, in multiples of the area that the ball covers. A sphere has 4.
 const FULL: f64 = 2.0;
-/// A triangle is cut across its longest edge while the square of that is so many times the triangle's area. In a right
-/// angle with equal legs it is 4 times as large.
-const LONG_TRIANGLE: f64 = 8.0;
 
-type Corners = [DVec3; 3];
+/// A flat piece of a lamp.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    /// Its corners, some of which may be the same.
+    corners: [DVec3; 5],
+    area: f64,
+}
 
 impl LampPart {
     /// Returns a lamp that is looked for as a whole.
@@ -35,34 +38,43 @@ impl LampPart {
         Self { ball, covered: ball.radius * ball.radius, halves: None }
     }
 
-    /// Returns a lamp of a flat shape, or of one that consists of flat polygons.
+    /// Returns a lamp of a flat shape, or of one that consists of flat polygons; `None` if these are too many, or long
+    /// and very many.
     pub fn of_polygons(shape: &Shape) -> Option<Self> {
         let bounds = shape.bounds()?;
-        if shape.part_count() > MAX_TRIANGLES {
+        if shape.part_count() as usize > MAX_PIECES {
             return None;
         }
         let shortest = bounds.size().max_element() / f64::from(1 << MAX_HALVINGS);
-        let mut triangles = Vec::new();
-        for corners in shape.polygons().flat_map(|polygon| polygon.triangles().collect::<Vec<_>>()) {
-            cut(corners, shortest, &mut triangles);
+        let mut pieces = Vec::new();
+        for polygon in shape.polygons() {
+            for corners in polygon.triangles() {
+                cut(corners, shortest, &mut pieces);
+            }
+            if pieces.len() > MAX_PIECES {
+                return None;
+            }
         }
-        (!triangles.is_empty()).then(|| Self::of_triangles(triangles, MAX_HALVINGS))
+        (!pieces.is_empty()).then(|| Self::of_pieces(pieces, MAX_HALVINGS))
     }
 
-    fn of_triangles(triangles: Vec<Corners>, halvings: u32) -> Self {
-        let bounds = Bounds::around(triangles.iter().flatten().copied());
-        let whole = Self::undivided(ball_around(&triangles, bounds.center()));
-        if halvings == 0 || triangles.iter().map(area).sum::<f64>() > FULL * PI * whole.covered {
+    fn of_pieces(pieces: Vec<Piece>, halvings: u32) -> Self {
+        let bounds = Bounds::around(pieces.iter().flat_map(|piece| piece.corners));
+        let whole = Self::undivided(ball_around(&pieces, bounds.center()));
+        if halvings == 0 || pieces.iter().map(|piece| piece.area).sum::<f64>() > FULL * PI * whole.covered {
             return whole;
         }
         let axis = bounds.size().max_position();
-        let plane = gap_near(&triangles, axis, bounds.center()[axis]);
-        let is_low = |corners: &Corners| corners.iter().map(|corner| corner[axis]).sum::<f64>() < 3.0 * plane;
-        let (low, high): (Vec<_>, Vec<_>) = triangles.into_iter().partition(is_low);
+        let plane = gap_near(&pieces, axis, bounds.center()[axis]);
+        let is_low = |piece: &Piece| {
+            let [from, to] = span(piece, axis);
+            0.5 * (from + to) < plane
+        };
+        let (low, high): (Vec<_>, Vec<_>) = pieces.into_iter().partition(is_low);
         if low.is_empty() || high.is_empty() {
             return whole;
         }
-        let halves = [low, high].map(|half| Self::of_triangles(half, halvings - 1));
+        let halves = [low, high].map(|half| Self::of_pieces(half, halvings - 1));
         let covered = halves.iter().map(|half| half.covered).sum::<f64>();
         if covered > MAX_SHARE * whole.covered {
             return whole;
@@ -86,22 +98,23 @@ impl LampPart {
     }
 }
 
-/// Returns the smallest ball around a center that contains some triangles.
-fn ball_around(triangles: &[Corners], center: DVec3) -> Ball {
-    let squared = triangles.iter().flatten().map(|corner| corner.distance_squared(center)).fold(0.0, f64::max);
+/// Returns the smallest ball around a center that contains some pieces.
+fn ball_around(pieces: &[Piece], center: DVec3) -> Ball {
+    let corners = pieces.iter().flat_map(|piece| piece.corners);
+    let squared = corners.map(|corner| corner.distance_squared(center)).fold(0.0, f64::max);
     Ball { center, radius: squared.sqrt() }
 }
 
-/// Returns the middle of that gap between triangles along an axis which is nearest to a place, or the place itself if
+/// Returns where a piece begins and ends along an axis.
+fn span(piece: &Piece, axis: usize) -> [f64; 2] {
+    let along = piece.corners.map(|corner| corner[axis]);
+    [along.into_iter().fold(f64::INFINITY, f64::min), along.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+/// Returns the middle of that gap between pieces along an axis which is nearest to a place, or the place itself if
 /// there is no gap.
-fn gap_near(triangles: &[Corners], axis: usize, place: f64) -> f64 {
-    let mut spans: Vec<[f64; 2]> = triangles
-        .iter()
-        .map(|corners| {
-            let [a, b, c] = corners.map(|corner| corner[axis]);
-            [a.min(b).min(c), a.max(b).max(c)]
-        })
-        .collect();
+fn gap_near(pieces: &[Piece], axis: usize, place: f64) -> f64 {
+    let mut spans: Vec<[f64; 2]> = pieces.iter().map(|piece| span(piece, axis)).collect();
     spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let (mut end, mut nearest) = (f64::INFINITY, None);
     for [from, to] in spans {
@@ -114,22 +127,37 @@ fn gap_near(triangles: &[Corners], axis: usize, place: f64) -> f64 {
     nearest.unwrap_or(place)
 }
 
-fn area([a, b, c]: &Corners) -> f64 {
-    0.5 * (b - a).cross(c - a).length()
-}
-
-/// Cuts a long triangle into compact ones, as far as they are longer than `shortest`.
-fn cut(corners: Corners, shortest: f64, into: &mut Vec<Corners>) {
+/// Cuts a long triangle across its longest edge into compact pieces, as far as they are longer than `shortest`.
+fn cut(corners: [DVec3; 3], shortest: f64, pieces: &mut Vec<Piece>) {
     let squared_edge = |i: usize| corners[i].distance_squared(corners[(i + 1) % 3]);
     let longest = (0..3).max_by(|&i, &j| squared_edge(i).total_cmp(&squared_edge(j))).unwrap_or(0);
-    let square = squared_edge(longest);
-    if square <= LONG_TRIANGLE * area(&corners) || square <= shortest * shortest {
-        return into.push(corners);
-    }
     let [a, b, c] = [0, 1, 2].map(|i| corners[(longest + i) % 3]);
-    let middle = 0.5 * (a + b);
-    cut([a, middle, c], shortest, into);
-    cut([middle, b, c], shortest, into);
+    let (length, area) = ((b - a).length(), 0.5 * (b - a).cross(c - a).length());
+    if length == 0.0 {
+        return pieces.push(Piece { corners: [a; 5], area });
+    }
+    let height = 2.0 * area / length;
+    // In a right angle with equal legs, the height is half the length.
+    let count = (length / (2.0 * height).max(shortest)).round().max(1.0);
+    // The place of the third corner along the edge.
+    let top = ((c - a).dot(b - a) / (length * length)).clamp(0.0, 1.0);
+    let other_side = |t: f64| match t {
+        t if t < top => a + (c - a) * (t / top),
+        t if t > top => b + (c - b) * ((1.0 - t) / (1.0 - top)),
+        _ => c,
+    };
+    // The share of the area up to a place along the edge.
+    let share = |t: f64| match t {
+        t if t < top => t * t / top,
+        t if t > top => 1.0 - (1.0 - t) * (1.0 - t) / (1.0 - top),
+        t => t,
+    };
+    for i in 0..count as u32 {
+        let [from, to] = [0, 1].map(|end| f64::from(i + end) / count);
+        let peak = if from < top && top < to { c } else { other_side(from) };
+        let corners = [a + (b - a) * from, a + (b - a) * to, other_side(to), peak, other_side(from)];
+        pieces.push(Piece { corners, area: area * (share(to) - share(from)) });
+    }
 }
 
 #[cfg(test)]
@@ -190,6 +218,37 @@ mod tests {
                 assert!(found.iter().any(is_bulb), "{center}");
             }
         }
+    }
+
+    #[test]
+    fn thin_triangles_are_cut_into_pieces_that_fill_them_and_are_not_too_many() {
+        let corners = |far: f64, top: f64, height: f64| {
+            [DVec3::ZERO, DVec3::new(far, 0.0, 0.0), DVec3::new(far * top, height, 0.0)]
+        };
+        for (height, most) in [(1.0, 4), (0.1, 40), (1e-3, 1024), (1e-9, 1024), (0.0, 1024)] {
+            for top in [0.0, 0.3, 0.5, 1.0] {
+                let mut pieces = Vec::new();
+                let triangle = corners(4.0, top, height);
+                cut(triangle, 4.0 / 1024.0, &mut pieces);
+                assert!((1..=most).contains(&pieces.len()), "{} pieces of height {height}", pieces.len());
+                let area: f64 = pieces.iter().map(|piece| piece.area).sum();
+                assert!((area - 2.0 * height).abs() <= 1e-12 * height, "{area} of height {height}");
+                for corner in triangle {
+                    assert!(pieces.iter().any(|piece| piece.corners.contains(&corner)), "{corner} of {pieces:?}");
+                }
+                let pairs = pieces.windows(2);
+                assert!(pairs.into_iter().all(|pair| pair[0].corners[1] == pair[1].corners[0]));
+            }
+        }
+        let mut pieces = Vec::new();
+        cut([DVec3::ONE; 3], 0.0, &mut pieces);
+        assert_eq!(pieces.len(), 1);
+        // All of a mesh of needles is one part if it would have too many pieces.
+        let needle = |i: u32| [3 * i, 3 * i + 1, 3 * i + 2];
+        let place = |i: u32| DVec3::new(0.0, 1e-4 * f64::from(i), 0.0);
+        let vertices = (0..1000).flat_map(|i| corners(4.0, 0.5, 1e-9).map(|corner| place(i) + corner)).collect();
+        let mesh = Mesh::new(Vertices::Double(vertices), (0..1000).map(needle).collect()).expect("it has triangles");
+        assert!(LampPart::of_polygons(&Shape::Mesh(mesh.into())).is_none());
     }
 
     #[test]
