@@ -304,7 +304,7 @@ fn long_lamps_and_all_bulbs_of_a_mesh_have_their_light() {
         (0..4).map(|i| format!("[{}, {}, {}, {}]", 4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3)).collect();
     let mesh = format!("shape.mesh = {{ points = [{}], faces = [{}] }}", vertices.join(", "), faces.join(", "));
     let cases = [
-        ("a tube", tube, 4.0 * f64::abs(along[0] * across[1] - along[1] * across[0]), 60..=128),
+        ("a tube", tube, 4.0 * f64::abs(along[0] * across[1] - along[1] * across[0]), 60..=300),
         ("a mesh", mesh, 4.0 * 4.0 * half * half, 4..=4),
     ];
     for (name, shape, area, parts) in &cases {

@@ -58,7 +58,8 @@ const MAX_LENS_SHARE: f64 = 0.25;
 /// share of 1 / (1 + W^2) of the light lies beyond.
 const ROUGH_HALF_WIDTH: f64 = 6.0;
 
-/// Returns the highlights of the format that are smaller than a pixel, or that a lens blurs, whatever part of it is rendered.
+/// Returns the highlights of the format that are smaller than a pixel, or that a lens blurs, whatever part of it is
+/// rendered.
 pub fn small_highlights(world: &World) -> SmallHighlights {
     let scene = &world.scene;
     let is_random = matches!(world.method.transport, Transport::Random { .. });

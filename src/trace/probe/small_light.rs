@@ -10,6 +10,9 @@ use crate::trace::World;
 /// Directions that are drawn along each side of a square to find where the bright part of a sky is.
 const DRAWS_PER_SIDE: u32 = 16;
 
+/// Most polygons of all lamps that are divided. The first lamps of a scene are, as far as these reach.
+const MAX_POLYGONS: u32 = 1 << 17;
+
 /// A light, or a part of one, that is looked for.
 #[derive(Clone, Copy)]
 pub struct SmallLight {
@@ -66,6 +69,7 @@ impl SmallLights {
     pub fn new(world: &World, max: usize) -> Self {
         let lights = &world.scene.lights;
         let (mut far, mut near, mut lamps) = (Vec::new(), Vec::new(), Vec::new());
+        let mut polygons_left = MAX_POLYGONS;
         let mut add_lamp = |id: LightId, object: Option<u32>, lamp: LampPart| {
             near.push((id, object));
             lamps.push(lamp);
@@ -79,7 +83,10 @@ impl SmallLights {
                 }
                 Light::Environment(sky) => bright_part(sky),
                 Light::Area(area) => {
-                    let in_parts = if lights.len() < max { LampPart::of_polygons(&area.shape) } else { None };
+                    let polygons = area.shape.part_count();
+                    let is_divided = lights.len() < max && polygons <= polygons_left;
+                    polygons_left -= if is_divided { polygons } else { 0 };
+                    let in_parts = if is_divided { LampPart::of_polygons(&area.shape) } else { None };
                     let whole = || Some(LampPart::undivided(area.visible_part()?.0));
                     in_parts.or_else(whole).into_iter().for_each(|lamp| add_lamp(id, Some(area.object), lamp));
                     None
