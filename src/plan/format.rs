@@ -134,6 +134,11 @@ mod tests {
         assert_eq!(described(&[0]).as_deref(), Some("1 light is smaller than a pixel"));
         assert_eq!(described(&[1, 2]).as_deref(), Some("2 highlights are smaller than a pixel"));
         assert_eq!(described(&[0, 0, 1]).as_deref(), Some("2 lights and 1 highlight are smaller than a pixel"));
+        assert_eq!(lines(&[], &[0]), ["1 light is out of focus"]);
+        assert_eq!(
+            lines(&[0], &[0, 0, 2]),
+            ["1 light is smaller than a pixel", "2 lights and 1 highlight are out of focus"]
+        );
     }
 
     #[test]
