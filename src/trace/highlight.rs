@@ -124,7 +124,7 @@ pub(super) struct SeenHighlight {
     /// The mean value of the pixel's filter.
     value: f64,
     /// The mean number of samples that come with each camera sample, at most 1.
-    count: f64,
+    pub(super) count: f64,
 }
 
 impl SeenHighlight {
@@ -196,13 +196,16 @@ fn seen_cells(highlight: &Highlight, filter: Filter, pixel: [i32; 2]) -> Distrib
     Distribution2d::new(CELL_COUNTS, weight, |_| 1.0)
 }
 
-/// Returns those of a pixel's highlights at which a camera sample aims, given a random number. Each is chosen as often
-/// as its mean number of samples says.
-pub(super) fn chosen(highlights: &[SeenHighlight], u: f64) -> impl Iterator<Item = &SeenHighlight> {
+/// Returns those of some items that are chosen by a random number: each as often as `mean_count` says, at most once.
+pub(super) fn chosen<T>(
+    items: impl Iterator<Item = T>,
+    mean_count: impl Fn(&T) -> f64,
+    u: f64,
+) -> impl Iterator<Item = T> {
     let mut sum = u;
-    highlights.iter().filter(move |highlight| {
+    items.filter(move |item| {
         let before = sum;
-        sum += highlight.count;
+        sum += mean_count(item);
         sum.floor() > before.floor()
     })
 }

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::highlight::{MAX_AIMED, longest_half_axis};
+use super::highlight::{MAX_AIMED, chosen, longest_half_axis};
 use crate::film::{Filter, Window};
 use crate::light::LightId;
 use crate::math::{DMat2, DVec2, sample_disk};
@@ -144,13 +144,7 @@ impl<'a> SeenLensLights<'a> {
     /// one chooses: at each light, or at some of them if there are many.
     pub fn aimed(&self, [u, v, choice]: [f64; 3]) -> impl Iterator<Item = LensPoint<'a>> {
         let Self { all, film, share, .. } = *self;
-        let mut sum = choice;
-        let chosen = self.lights().filter(move |_| {
-            let before = sum;
-            sum += share;
-            sum.floor() > before.floor()
-        });
-        chosen
+        chosen(self.lights(), move |_| share, choice)
             .map(move |light| LensPoint { light, place: light.middle(film) + light.map() * sample_disk([u, v]) })
             .filter(move |point| point.place.length() < all.lens_radius)
     }

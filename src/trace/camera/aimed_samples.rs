@@ -29,7 +29,7 @@ pub fn add_aimed_at_highlights<const N: usize, P: Polarization<N>>(
     let world = tracer.walker.world;
     let scene = &world.scene;
     let [u, v, choice, _] = sampler.get_4d(BranchKey::CAMERA, dimensions::HIGHLIGHT);
-    let samples = chosen(highlights, choice).filter_map(|highlight| {
+    let samples = chosen(highlights.iter(), |highlight| highlight.count, choice).filter_map(|highlight| {
         let film = highlight.sample([u, v]);
         let counted = Counted::aimed(scene.film.filter, film, offset(film, pixel), highlight, highlights)?;
         Some(AimedSample { ray: scene.camera.ray(film), counted })
