@@ -207,14 +207,14 @@ impl Camera {
 
     /// Returns the ray through a point of the film and the point of the lens to which a point of the unit square is
     /// mapped.
-    ///
-    /// A ray that starts at a point p of the lens has the direction (x, y, 1) - p / F. Therefore all rays of one point
-    /// of the film meet at distance F, and 1 / F may be 0.
     pub fn lens_ray(&self, film: DVec2, u: [f64; 2]) -> Ray {
         self.ray_from_lens(film, sample_disk(u) * self.lens_radius())
     }
 
     /// Returns the ray through a point of the film and a point of the lens, given in scene units to the right and up.
+    ///
+    /// A ray that starts at a point p of the lens has the direction (x, y, 1) - p / F. Therefore all rays of one point
+    /// of the film meet at distance F, and 1 / F may be 0.
     pub fn ray_from_lens(&self, film: DVec2, place: DVec2) -> Ray {
         let Some(lens) = self.lens else { return self.ray(film) };
         let (start, along) = self.chief_ray(film);

@@ -34,7 +34,7 @@ pub struct Highlight {
 impl Highlight {
     /// Returns the map from the unit disk to the ellipse around its center.
     fn map(&self) -> DMat2 {
-        DMat2::from_cols(self.radii[0].into(), self.radii[1].into())
+        DMat2::from_cols_array_2d(&self.radii)
     }
 
     /// Maps a point of the unit square to the film, in pixels, so that uniform points have this density.

@@ -34,15 +34,19 @@ pub struct LensLight {
 }
 
 impl LensLight {
+    /// Returns the map from the unit disk to the ellipse around its middle.
     fn map(&self) -> DMat2 {
-        DMat2::from_cols(self.radii[0].into(), self.radii[1].into())
+        DMat2::from_cols_array_2d(&self.radii)
+    }
+
+    /// Returns the map from offsets on the film to those on the lens.
+    fn to_lens(&self) -> DMat2 {
+        DMat2::from_cols_array_2d(&self.per_pixel)
     }
 
     /// Returns the middle of the ellipse through which a point of the film sees the light.
     fn middle(&self, film: DVec2) -> DVec2 {
-        let [x, y] = self.per_pixel.map(DVec2::from);
-        let offset = film - DVec2::from(self.center);
-        x * offset.x + y * offset.y
+        self.to_lens() * (film - DVec2::from(self.center))
     }
 
     /// Returns how far the ellipse reaches at most.
@@ -65,8 +69,7 @@ impl LensLight {
 
     /// Returns half the size of a box around the blurred image on the film, in pixels.
     pub(super) fn half_size(&self, lens_radius: f64) -> DVec2 {
-        let [x, y] = self.per_pixel.map(DVec2::from);
-        let rows = DMat2::from_cols(x, y).inverse().transpose();
+        let rows = self.to_lens().inverse().transpose();
         (lens_radius + self.reach()) * DVec2::new(rows.x_axis.length(), rows.y_axis.length())
     }
 }
@@ -78,6 +81,8 @@ const BLOCK: f64 = 16.0;
 #[derive(Clone, Debug, Default)]
 pub(super) struct LensLights {
     lights: Vec<LensLight>,
+    /// How far from the middle of the lens the middle of each one's ellipse may be.
+    limits: Vec<f64>,
     lens_radius: f64,
     /// The lights that points of a block of the film may see.
     blocks: HashMap<[i32; 2], Vec<u32>>,
@@ -96,7 +101,8 @@ impl LensLights {
                 blocks.entry(block).or_default().push(number);
             }
         }
-        Self { lights: lights.to_vec(), lens_radius, blocks }
+        let limits = lights.iter().map(|light| lens_radius + light.reach()).collect();
+        Self { lights: lights.to_vec(), limits, lens_radius, blocks }
     }
 
     /// Returns the lights that a point of the film may see, if there are any.
@@ -136,8 +142,11 @@ pub(super) struct SeenLensLights<'a> {
 impl<'a> SeenLensLights<'a> {
     fn lights(&self) -> impl Iterator<Item = &'a LensLight> {
         let Self { all, film, .. } = *self;
-        let is_seen = move |light: &&LensLight| light.middle(film).length() < all.lens_radius + light.reach();
-        self.numbers.iter().map(|&number| &all.lights[number as usize]).filter(is_seen)
+        let seen = move |&number: &u32| {
+            let (light, limit) = (&all.lights[number as usize], all.limits[number as usize]);
+            (light.middle(film).length() < limit).then_some(light)
+        };
+        self.numbers.iter().filter_map(seen)
     }
 
     /// Returns points of the lens from which a camera sample looks at the lights, with random numbers of which the last

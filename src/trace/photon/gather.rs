@@ -8,10 +8,10 @@
 //!
 //! Photons count, whatever object they lie on, if their surface continues the one around the place and is visible from
 //! a point above it. From that point, they are projected onto the disc in the tangent plane, so that those of a curved
-//! surface fill the disc as those of a flat one do.
-//! At edges, a part of the disc has no such surface, and the sum is divided by the share that has.
-//! The reciprocal of that share is the mean number of points of the disc that must be drawn until one lies on such a
-//! surface (Booth 2007, *Unbiased Monte Carlo Estimation of the Reciprocal of an Integral*): one, away from edges.
+//! surface fill the disc as those of a flat one do. At edges, a part of the disc has no such surface, and the sum is
+//! divided by the share that has. The reciprocal of that share is the mean number of points of the disc that must be
+//! drawn until one lies on such a surface (Booth 2007, *Unbiased Monte Carlo Estimation of the Reciprocal of an
+//! Integral*): one, away from edges.
 
 use std::cell::OnceCell;
 use std::f64::consts::PI;

@@ -76,12 +76,13 @@ impl SmallLights {
         };
         let at = |position: [f64; 3]| LampPart::undivided(Ball { center: position.into(), radius: 0.0 });
         for (id, light) in lights.iter().enumerate() {
-            let place = match light {
+            let far_light = |place: Place| SmallLight { id, object: None, place };
+            match light {
                 Light::Sun(sun) => {
                     let sin = libm::sin(0.5 * sun.angular_diameter.to_radians());
-                    Some(Place::Far { direction: sun.center_direction(), sin })
+                    far.push(far_light(Place::Far { direction: sun.center_direction(), sin }));
                 }
-                Light::Environment(sky) => bright_part(sky),
+                Light::Environment(sky) => far.extend(bright_part(sky).map(far_light)),
                 Light::Area(area) => {
                     let polygons = area.shape.part_count();
                     let is_divided = lights.len() < max && polygons <= polygons_left;
@@ -89,18 +90,10 @@ impl SmallLights {
                     let in_parts = if is_divided { LampPart::of_polygons(&area.shape) } else { None };
                     let whole = || Some(LampPart::undivided(area.visible_part()?.0));
                     in_parts.or_else(whole).into_iter().for_each(|lamp| add_lamp(id, Some(area.object), lamp));
-                    None
                 }
-                Light::Point(point) => {
-                    add_lamp(id, None, at(point.position));
-                    None
-                }
-                Light::Spot(spot) => {
-                    add_lamp(id, None, at(spot.position));
-                    None
-                }
-            };
-            far.extend(place.map(|place| SmallLight { id, object: None, place }));
+                Light::Point(point) => add_lamp(id, None, at(point.position)),
+                Light::Spot(spot) => add_lamp(id, None, at(spot.position)),
+            }
         }
         Self { far, near, lamps }
     }
